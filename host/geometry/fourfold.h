@@ -21,21 +21,26 @@ class FourfoldHistogram {
     }
     double total() const { return total_; }
 
+    // Within so many bins of one.
+    double around(int bin, int reach) const {
+        double sum = 0;
+        for (int d = -reach; d <= reach; ++d)
+            sum += bins_[static_cast<std::size_t>((bin + d + count) % count)];
+        return sum;
+    }
     // The first bin with the most weight within so many bins of it.
     Peak peak(int reach) const {
-        constexpr int count = 90;
         Peak most;
         for (int b = 0; b < count; ++b) {
-            double sum = 0;
-            for (int d = -reach; d <= reach; ++d)
-                sum += bins_[static_cast<std::size_t>((b + d + count) % count)];
+            const double sum = around(b, reach);
             if (sum > most.weight) most = {b, sum};
         }
         return most;
     }
 
   private:
-    std::array<double, 90> bins_{};
+    static constexpr int count = 90;
+    std::array<double, count> bins_{};
     double total_ = 0;
 };
 

@@ -23,6 +23,8 @@ struct SceneFrame {
 struct FrameHints {
     std::optional<Vec3> up;         // the user's: always wins, with a note where it looks wrong
     std::optional<Vec3> camera_up;  // mean -y axis of the cameras, if there were any
+    // Whether nothing but the looks of the scene told which side of each surface was seen.
+    bool sides_guessed = false;
 };
 
 // Clusters the normals on the sphere (kernel normal_cluster: spherical k-means with antipodes

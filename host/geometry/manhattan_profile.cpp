@@ -21,6 +21,8 @@ constexpr double slant_degrees = 20;
 constexpr double end_share = 0.1;
 // With less than this share of the other, one of them is not there.
 constexpr double lone_share = 0.1;
+// A scene that is no higher has no ends.
+constexpr double least_extent_cells = 10;
 // Less surface than this share of all tells nothing of which end is up.
 constexpr double telling_share = 0.005;
 
@@ -42,22 +44,25 @@ Vec3 across(const Vec3& axis) {
     return unit_or_zero(cross(axis, std::abs(axis[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
 }
 
-double turned_share(const WeightedNormals& normals, const Vec3& axis) {
+double turned_share(const WeightedNormals& normals, const LargePlanes& planes, const Vec3& axis) {
     const Vec3 e1 = across(axis), e2 = cross(axis, e1);
     const double most_sine = std::sin(along_degrees * std::numbers::pi / 180);
-    FourfoldHistogram histogram;
+    FourfoldHistogram all, apart;  // apart: in no large plane
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
         if (std::abs(dot(n, axis)) >= most_sine) continue;
         const double degrees = std::atan2(dot(n, e2), dot(n, e1)) * 180 / std::numbers::pi + 360;
-        histogram.add(degrees, normals.weight[i]);
+        all.add(degrees, normals.weight[i]);
+        if (!planes.holds[i]) apart.add(degrees, normals.weight[i]);
     }
-    return (histogram.total() - histogram.peak(followed_degrees).weight) / normals.total;
+    const int followed = all.peak(followed_degrees).bin;
+    return (apart.total() - apart.around(followed, followed_degrees)) / normals.total;
 }
 
 }  // namespace
 
-Profile profile_along(const Surfels& s, const WeightedNormals& normals, const Vec3& axis) {
+Profile profile_along(const Surfels& s, const WeightedNormals& normals, const LargePlanes& planes,
+                      const Vec3& axis) {
     Profile result;
     if (normals.size() == 0) return result;
     const auto cosine = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180); };
@@ -91,7 +96,7 @@ Profile profile_along(const Surfels& s, const WeightedNormals& normals, const Ve
         return std::max(pair, before) >= large_share * normals.total;
     };
     Balance middle, clutter;
-    double floor = 0, ceiling = 0;
+    double floor = 0, ceiling = 0, lower = 0, upper = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const double w = normals.weight[i], f = std::abs(facing[i]);
         const double part = result.extent_m > 0 ? (height[i] - bottom) / result.extent_m : 0.5;
@@ -102,8 +107,9 @@ Profile profile_along(const Surfels& s, const WeightedNormals& normals, const Ve
                 middle.add(facing[i] > 0 ? 1 : -1, w);
             } else {
                 (facing[i] > 0 ? floor : ceiling) += w;
+                (part < 0.5 ? lower : upper) += w;
             }
-        } else if (f < slant_high && f > slant_low && part >= 0 && part <= 1) {
+        } else if (f < slant_high && f > slant_low && part >= 0 && part <= 1 && !planes.holds[i]) {
             clutter.add(1 - 2 * part, w);
         }
     }
@@ -111,10 +117,14 @@ Profile profile_along(const Surfels& s, const WeightedNormals& normals, const Ve
     result.against /= normals.total;
     const double least = telling_share * normals.total;
     result.level_facing = middle.mean(least);
-    const bool one = std::min(floor, ceiling) < lone_share * std::max(floor, ceiling);
-    if (one && floor + ceiling > least) result.lone_end = floor > ceiling ? 1 : -1;
+    const auto lone = [&](double low_end, double high_end) -> double {
+        const bool one = std::min(low_end, high_end) < lone_share * std::max(low_end, high_end);
+        return !one || low_end + high_end <= least ? 0 : low_end > high_end ? 1 : -1;
+    };
+    result.lone_end = lone(floor, ceiling);
+    if (result.extent_m > least_extent_cells * s.cell_m) result.lone_place = lone(lower, upper);
     result.clutter_low = clutter.mean(least);
-    result.turned = turned_share(normals, axis);
+    result.turned = turned_share(normals, planes, axis);
     return result;
 }
 

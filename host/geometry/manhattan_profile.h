@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "geometry/large_planes.h"
 #include "geometry/manhattan_normals.h"
 
 namespace topple::geometry {
@@ -16,12 +17,18 @@ struct Profile {
     double extent_m = 0;  // of the scene along the axis, without the outer 1 %
     // What tells the axis' ends apart, -1..1, positive where the axis points up:
     double level_facing = 0;  // of level surface between the outermost tenths: tables face up
-    double clutter_low = 0;   // how far below half height slanted surface lies: things lie low
-    double lone_end = 0;      // 1: of floor and ceiling only a floor is there, -1: only a ceiling
+    // How far below half height slanted surface lies, but for large planes: things lie low.
+    double clutter_low = 0;
+    double lone_end = 0;  // 1: of floor and ceiling only a floor is there, -1: only a ceiling
+    // The same by where level surface lies, whatever it faces: at the lower end alone, or the
+    // upper.
+    double lone_place = 0;
     // Share of all surface that runs along the axis, as walls and things that stand do, but follows
     // no two directions at right angles: what stands may be turned or round, what lies may not.
+    // Large planes do not count: a roof runs along the ridge, and is one surface, not many things.
     double turned = 0;
 };
-Profile profile_along(const Surfels& surfels, const WeightedNormals& normals, const Vec3& axis);
+Profile profile_along(const Surfels& surfels, const WeightedNormals& normals,
+                      const LargePlanes& planes, const Vec3& axis);
 
 }  // namespace topple::geometry

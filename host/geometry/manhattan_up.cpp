@@ -33,9 +33,13 @@ constexpr double least_upright_share = 0.3;
 constexpr double extent_weight = -1.75, level_weight = 1.9, clutter_weight = 1.4,
                  lone_end_weight = 1.1, turned_weight = 2.3, turned_floor = 0.02;
 // Odds of the input's z, give or take a tilt, and of its y, either way, against any direction.
-constexpr double tilt_degrees = 10, odds_of_z = 50, odds_of_y = 5;
+constexpr double tilt_degrees = 10, odds_of_z = 100, odds_of_y = 5;
 // Farther from z than this, up is told to the user.
 constexpr double customary_degrees = 25;
+// Sides that were guessed are never surer than this; less sure, they don't tell up from down.
+constexpr double surest_guess = 0.98, unsure_guess = 0.5;
+// Directions so far apart are two; both are told where the odds are less than these.
+constexpr double apart_degrees = 25, near_odds = 3;
 // An up that was given is told to be wrong where the scan's own is farther from it than any floor
 // is from level, and likelier by these log-odds, of 20 to 1. Of cameras one in 20 is not held
 // level, but on its side or upside down.
@@ -47,6 +51,9 @@ constexpr auto seen_from_above =
 constexpr auto by_looks =
     "Nothing in the input says where up is, and it is not z: it was chosen by how the surfaces "
     "lie; if it is wrong, say where up is by ParseOptions::up.";
+constexpr auto either_side =
+    "Nothing in the scan shows which side of its level surfaces is up: z's was taken; if it is "
+    "wrong, say where up is by ParseOptions::up.";
 constexpr auto by_walls =
     "No level surface was found: up is the direction along the upright ones that is nearest to the "
     "camera's; if it is wrong, say where up is by ParseOptions::up.";
@@ -62,12 +69,31 @@ Vec3 times(const Vec3& v, double factor) {
     return {v[0] * factor, v[1] * factor, v[2] * factor};
 }
 
+// What there is to judge a direction by.
+struct Seen {
+    const Surfels& surfels;
+    const WeightedNormals& normals;
+    LargePlanes planes;
+    double sides_right;  // probability that surfaces were seen from where they face
+    Profile along(const Vec3& axis) const { return profile_along(surfels, normals, planes, axis); }
+};
+
+// Sides that were guessed are as sure as the scene is a room around its sensor, or a thing that the
+// sensor went around. Stairs, or a bare floor, look the same from below.
+Seen look(const Surfels& surfels, const WeightedNormals& normals,
+          const std::vector<Vec3>& directions, bool sides_guessed) {
+    Seen out{surfels, normals, find_large_planes(surfels, normals, directions), 1};
+    if (sides_guessed) out.sides_right = std::min(surest_guess, std::abs(out.planes.enclosing));
+    return out;
+}
+
 // A direction that may be up.
 struct Candidate {
     Vec3 up{};
     bool manhattan = false;
     double score = 0;
-    const char* doubt = "";  // as UpChoice::note
+    const char* doubt = "";       // as UpChoice::note
+    std::optional<Vec3> other{};  // a direction about as likely
 };
 
 void keep_better(Candidate& best, const Candidate& other) {
@@ -75,12 +101,12 @@ void keep_better(Candidate& best, const Candidate& other) {
 }
 
 // The evidence of planes across a direction, weighed by how near it is to the camera's up.
-Candidate with_camera(const Surfels& surfels, const WeightedNormals& normals,
-                      const std::vector<Candidate>& candidates, const Vec3& camera_up) {
+Candidate with_camera(const Seen& seen, const std::vector<Candidate>& candidates,
+                      const Vec3& camera_up) {
     Candidate best;
     for (Candidate c : candidates) {
         if (dot(c.up, camera_up) < 0) c.up = times(c.up, -1);
-        const Profile p = profile_along(surfels, normals, c.up);
+        const Profile p = seen.along(c.up);
         for (const bool flipped : {false, true}) {
             const double up = flipped ? p.against : p.along, down = flipped ? p.along : p.against;
             Candidate option = c;
@@ -111,34 +137,49 @@ double prior_odds(const Vec3& up) {
     return 1 + odds_of_z * near({0, 0, 1}) + odds_of_y * (near({0, 1, 0}) + near({0, -1, 0}));
 }
 
-// How the scene lies along an axis, as log-odds of either end of it being up.
-struct AxisOdds {
-    double axis, side;  // of both ends; of the positive one, and as much against the other
-};
-AxisOdds axis_odds(const Profile& p, double cell_m) {
-    return {extent_weight * std::log(std::max(p.extent_m, 10 * cell_m)) +
-                turned_weight * std::log(p.turned + turned_floor),
-            level_weight * p.level_facing + clutter_weight * p.clutter_low +
-                lone_end_weight * p.lone_end};
+// How the scene lies along an axis, as log-odds of its positive and its negative end being up.
+// Where the sides of surfaces are wrong, only their places tell the ends apart.
+std::array<double, 2> end_odds(const Profile& p, const Seen& seen) {
+    const double axis = extent_weight * std::log(std::max(p.extent_m, 10 * seen.surfels.cell_m)) +
+                        turned_weight * std::log(p.turned + turned_floor);
+    const double facing = level_weight * p.level_facing + clutter_weight * p.clutter_low +
+                          lone_end_weight * p.lone_end,
+                 place = lone_end_weight * p.lone_place;
+    const auto chance = [](double log_odds) { return 1 / (1 + std::exp(-2 * log_odds)); };
+    const auto odds = [&](double sign) {
+        return axis + std::log(2 * std::cosh(facing)) +
+               std::log(seen.sides_right * chance(sign * facing) +
+                        (1 - seen.sides_right) * chance(sign * place));
+    };
+    return {odds(1), odds(-1)};
 }
 
 // Without a camera: rooms are wider than high, what stands is turned about up alone, level surface
 // within faces up, and things lie low.
-Candidate without_camera(const Surfels& surfels, const WeightedNormals& normals,
-                         const std::vector<Candidate>& candidates) {
+Candidate without_camera(const Seen& seen, const std::vector<Candidate>& candidates) {
+    std::vector<Candidate> all;
     Candidate best;
     for (const Candidate& c : candidates) {
-        const Profile p = profile_along(surfels, normals, c.up);
+        const Profile p = seen.along(c.up);
         if (p.along + p.against < least_plane_share) continue;
-        const auto [axis, side] = axis_odds(p, surfels.cell_m);
+        const auto [up, down] = end_odds(p, seen);
+        const bool open = seen.sides_right < unsure_guess && p.lone_place == 0;
         for (const double sign : {1.0, -1.0}) {
             Candidate option = c;
             option.up = times(c.up, sign);
-            option.score *= std::exp(axis + sign * side) * prior_odds(option.up);
-            if (degrees_between(option.up, {0, 0, 1}) >= customary_degrees) option.doubt = by_looks;
+            option.score *= std::exp(sign > 0 ? up : down) * prior_odds(option.up);
+            if (degrees_between(option.up, {0, 0, 1}) >= customary_degrees)
+                option.doubt = by_looks;
+            else if (open)
+                option.doubt = either_side;
             keep_better(best, option);
+            all.push_back(option);
         }
     }
+    Candidate second;
+    for (const Candidate& c : all)
+        if (degrees_between(c.up, best.up) > apart_degrees) keep_better(second, c);
+    if (near_odds * second.score > best.score) best.other = second.up;
     return best;
 }
 
@@ -185,12 +226,11 @@ std::optional<Vec3> implied_camera(const WeightedNormals& normals) {
 }
 
 // What surfaces, and the camera where there is one, tell of a direction.
-double log_odds_of(const Surfels& surfels, const WeightedNormals& normals, const Vec3& up,
-                   const std::optional<Vec3>& camera) {
-    const auto [axis, side] = axis_odds(profile_along(surfels, normals, up), surfels.cell_m);
-    if (!camera) return axis + side;
+double log_odds_of(const Seen& seen, const Vec3& up, const std::optional<Vec3>& camera) {
+    const double looks = end_odds(seen.along(up), seen)[0];
+    if (!camera) return looks;
     const double off = degrees_between(up, *camera) / usual_pitch_degrees;
-    return axis + side + std::log((1 - rolled_share) * std::exp(-off * off / 2) + rolled_share);
+    return looks + std::log((1 - rolled_share) * std::exp(-off * off / 2) + rolled_share);
 }
 
 std::string text_of(const Vec3& v) {
@@ -202,40 +242,45 @@ std::string text_of(const Vec3& v) {
     return text.append(")");
 }
 
+std::string two_ups(const Vec3& taken, const Vec3& other) {
+    return "Two directions may be up: " + text_of(taken) + ", which was taken, and " +
+           text_of(other) + "; say which it is by ParseOptions::up.";
+}
+
 // Where up is by the scan itself.
 struct FoundUp : UpChoice {
     bool level = false;  // by level surface, of which no camera looked straight at a wall
 };
 
-FoundUp find_up(const Surfels& surfels, const WeightedNormals& normals,
-                const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
-                const std::optional<Vec3>& camera) {
+FoundUp find_up(const Seen& seen, const std::vector<Vec3>& directions,
+                const std::vector<Vec3>& manhattan, const std::optional<Vec3>& camera) {
     const FoundUp assumed{{camera.value_or(Vec3{0, 0, 1}), "assumed", not_found}};
-    if (normals.size() == 0) return assumed;
+    if (seen.normals.size() == 0) return assumed;
 
     std::vector<Candidate> candidates;
     // An axis of the best triple goes before a single direction that is no better.
     for (const Vec3& axis : manhattan) candidates.push_back({axis, true, 1.1});
     for (const Vec3& axis : directions) candidates.push_back({axis, false, 1.0});
-    const Candidate best = camera ? with_camera(surfels, normals, candidates, *camera)
-                                  : without_camera(surfels, normals, candidates);
+    const Candidate best =
+        camera ? with_camera(seen, candidates, *camera) : without_camera(seen, candidates);
     if (best.score > 0) {
-        return {{refine_axis(normals, best.up), best.manhattan ? "manhattan" : "dominant-plane",
-                 best.doubt},
+        const Vec3 up = refine_axis(seen.normals, best.up);
+        return {{up, best.manhattan ? "manhattan" : "dominant-plane",
+                 best.other ? two_ups(up, refine_axis(seen.normals, *best.other)) : best.doubt},
                 best.doubt != seen_from_above};
     }
     Vec3 up = assumed.up;
-    if (camera && up_from_uprights(normals, up)) return {{up, "upright-surfaces", by_walls}};
+    if (camera && up_from_uprights(seen.normals, up)) return {{up, "upright-surfaces", by_walls}};
     return assumed;
 }
 
 // Of an up that the scan contradicts: in which way; else "".
-std::string doubt_of_given(const Surfels& surfels, const WeightedNormals& normals, const Vec3& up,
-                           const FoundUp& found, const std::optional<Vec3>& camera) {
+std::string doubt_of_given(const Seen& seen, const Vec3& up, const FoundUp& found,
+                           const std::optional<Vec3>& camera) {
     const double degrees = degrees_between(up, found.up);
     if (!found.level || degrees <= contradicted_degrees) return {};
-    const double ahead = log_odds_of(surfels, normals, found.up, camera) -
-                         log_odds_of(surfels, normals, refine_axis(normals, up), camera);
+    const double ahead = log_odds_of(seen, found.up, camera) -
+                         log_odds_of(seen, refine_axis(seen.normals, up), camera);
     if (ahead <= contradicted_log_odds) return {};
     return "The up that was given, " + text_of(up) + ", is " +
            std::to_string(std::lround(degrees)) + " degrees from what the surfaces " +
@@ -251,11 +296,12 @@ UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
     std::optional<Vec3> camera;
     if (hints.camera_up && dot(*hints.camera_up, *hints.camera_up) > 0)
         camera = unit_or_zero(*hints.camera_up);
-    if (!camera && normals.size() > 0) camera = implied_camera(normals);
-    const FoundUp found = find_up(surfels, normals, directions, manhattan, camera);
+    if (!camera && !hints.sides_guessed && normals.size() > 0) camera = implied_camera(normals);
+    const Seen seen = look(surfels, normals, directions, hints.sides_guessed);
+    const FoundUp found = find_up(seen, directions, manhattan, camera);
     if (!hints.up || !(dot(*hints.up, *hints.up) > 0)) return found;
     const Vec3 given = unit_or_zero(*hints.up);
-    return {given, "given", doubt_of_given(surfels, normals, given, found, camera)};
+    return {given, "given", doubt_of_given(seen, given, found, camera)};
 }
 
 }  // namespace topple::geometry

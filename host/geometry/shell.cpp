@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/shell.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,7 @@
 #include "geometry/primitive_shapes.h"
 #include "geometry/shell_features.h"
 #include "geometry/sight_lines.h"
+#include "geometry/upright_box.h"
 
 namespace topple::geometry {
 namespace {
@@ -18,6 +20,10 @@ namespace {
 // no more than 45 degrees from it; and a floor no higher above the lowest than a platform is, or as
 // large as that of a room, a gallery.
 constexpr double flat_face = 0.7, wall_face = 0.9, level_cos = 0.7, platform_m = 0.5;
+
+// A box that stands by itself is the room's, as a kitchen's island is, no oftener than this; the
+// model was fitted on rooms that have few such things, and takes large ones for walls.
+constexpr double box_shell = 0.1;
 
 Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double level = p.face()[2];
@@ -43,7 +49,10 @@ void judge(const SurfaceSamples& samples, const StoreyHint& storey, ThreadPool& 
         if (shapes.of[p].samples() == 0 || height < storey.below_m || height >= storey.top_m)
             return;
         const auto row = std::span(rows).subspan(p * width, width);
-        out.log_odds[p] = fitted::log_odds(fitted::probability(model.log_odds(row)));
+        double shell = fitted::probability(model.log_odds(row));
+        if (is_upright_box(samples, shapes.of[p], shapes.low[2]))
+            shell = std::min(shell, box_shell);
+        out.log_odds[p] = fitted::log_odds(shell);
         if (out.log_odds[p] > 0)
             out.role[p] = role_of_shape(shapes.of[p], shapes.low[2], shapes.high[2]);
     });

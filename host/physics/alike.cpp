@@ -11,6 +11,10 @@ namespace {
 
 // Voxels, what stands beside them and what was not seen of them make boxes of equal things differ.
 constexpr double alike_share = 0.15;
+// The log-odds of being closed that the share of a box's columns that a wall is seen behind is off
+// by.
+constexpr double odds_error = 0.3;
+constexpr double least_share = 0.005;  // of ways to fall that count
 
 bool alike_sides(double a, double b) {
     return std::abs(a - b) <= alike_share * std::max(a, b);
@@ -34,21 +38,28 @@ Alike alike_objects(std::span<const FurnitureLooks> looks) {
     return out;
 }
 
-std::vector<double> probabilities_closed(std::span<const FurnitureLooks> looks,
-                                         const Alike& alike) {
-    const auto log_odds = [](double p) { return std::log(p / (1 - p)); };
-    const auto told = [&](std::size_t o) {
-        return log_odds(probability_closed(looks[o])) - log_odds(closed_share);
-    };
-    std::vector<double> out(looks.size(), 0);
+std::vector<ClosedOdds> closed_odds(std::span<const FurnitureLooks> looks, const Alike& alike) {
+    const auto chance = [](double log_odds) { return 1 / (1 + std::exp(-log_odds)); };
+    const double before = std::log(closed_share / (1 - closed_share));
+    const auto tells = [&](std::size_t o) { return looks[o].fill >= least_furniture_fill; };
+    std::vector<ClosedOdds> out(looks.size());
     for (std::size_t o = 0; o < looks.size(); ++o) {
-        if (looks[o].fill < least_furniture_fill) continue;
-        double sum = log_odds(closed_share) + told(o);
-        for (const std::int32_t other : alike[o]) {
-            const auto at = static_cast<std::size_t>(other);
-            if (looks[at].fill >= least_furniture_fill) sum += told(at);
-        }
-        out[o] = 1 / (1 + std::exp(-sum));
+        if (!tells(o)) continue;
+        const auto odds = [&](const auto& backing) {
+            double sum = log_odds_closed(looks[o], backing(looks[o]));
+            for (const std::int32_t other : alike[o]) {
+                const auto at = static_cast<std::size_t>(other);
+                if (tells(at)) sum += log_odds_closed(looks[at], backing(looks[at])) - before;
+            }
+            return sum;
+        };
+        const double usual = odds([](const FurnitureLooks& l) { return l.backing; });
+        const double less = odds([](const FurnitureLooks&l) { return l.backing_range[0]; }),
+                     more = odds([](const FurnitureLooks&l) { return l.backing_range[1]; });
+        const double closed =
+            (chance(less / odds_error) + chance(usual / odds_error) + chance(more / odds_error)) /
+            3;
+        out[o] = {chance(usual), closed < least_share ? 0 : closed > 1 - least_share ? 1 : closed};
     }
     return out;
 }

@@ -16,10 +16,18 @@ namespace topple::physics {
 using Alike = std::vector<std::vector<std::int32_t>>;
 Alike alike_objects(std::span<const FurnitureLooks> looks);
 
-// By object, the probability that it is closed furniture if what is alike is of one kind: what the
-// looks of each add to the log-odds of closed_share, summed over its own and those that are alike
-// and fill their boxes enough to tell. 0 for what does not itself.
-std::vector<double> probabilities_closed(std::span<const FurnitureLooks> looks, const Alike& alike);
+struct ClosedOdds {
+    double probability = 0;  // that it is closed furniture
+    // Share of the ways that voxels may fall by which it is likelier closed than not: 0 or 1 but
+    // for what is near the border of both, which another origin of the same scan puts on either
+    // side.
+    double closed_ways = 0;
+};
+
+// By object, for what is alike being of one kind: what the looks of each add to the log-odds of
+// closed_share, summed over its own and those that are alike and fill their boxes enough to tell. 0
+// for what does not itself.
+std::vector<ClosedOdds> closed_odds(std::span<const FurnitureLooks> looks, const Alike& alike);
 
 // One standard error that the masses of alike things show: their logarithms differ by the root of
 // two times what each is off, in the mean of squares; the mass less than which it then is one

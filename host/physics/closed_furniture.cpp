@@ -15,6 +15,9 @@ namespace {
 
 constexpr double backing_reach_m = 0.08;
 
+// By how far is looked behind an object: a voxel less than that, that, and a voxel more.
+using Backing = std::array<double, 3>;
+
 using Point = std::array<double, 2>;
 
 struct FootOutline {
@@ -31,12 +34,13 @@ class Sight {
 
     // Of a rectangle's side the share of what the object has within reach of it that has the room
     // within reach of that.
-    double backed(const Rectangle& r, std::size_t axis, int way, const FootOutline& of,
-                  std::int32_t object) const {
+    Backing backed(const Rectangle& r, std::size_t axis, int way, const FootOutline& of,
+                   std::int32_t object) const {
         const double h = cells_.voxel_m, step = 2 * h;  // along the side
         const auto reach = static_cast<int>(std::max<double>(1, std::lround(backing_reach_m / h)));
         const Point &out = r.axes[axis], &along = r.axes[1 - axis];
-        std::size_t solid = 0, before = 0;
+        std::size_t solid = 0;
+        std::array<std::size_t, 3> before{};
         for (double s = -r.half[1 - axis] + h; s < r.half[1 - axis]; s += step) {
             for (std::int32_t k = of.lowest; k <= of.highest; k += 2) {
                 const auto cell = [&](int n) {  // n voxels beyond the side
@@ -47,20 +51,27 @@ class Sight {
                 // The object may end short of its box, and go a little way into a wall, of which
                 // nobody knows how thick it is.
                 int last = 1;
-                bool own = false, behind = false;
+                bool own = false;
                 while (!own && last > -reach) {
                     const std::int32_t p = cell(--last);
                     own = p >= 0 && object_[static_cast<std::size_t>(p)] == object;
                 }
-                for (int n = last - reach; own && n <= last + reach && !behind; ++n) {
+                if (!own) continue;
+                ++solid;
+                const auto behind = [&](int n) {
                     const std::int32_t p = cell(n);
-                    behind = p >= 0 && room_[static_cast<std::size_t>(p)];
-                }
-                solid += own;
-                before += behind;
+                    return p >= 0 && room_[static_cast<std::size_t>(p)];
+                };
+                int away = 0;
+                while (away <= reach + 1 && !behind(last - away) && !behind(last + away)) ++away;
+                for (int more = -1; more <= 1; ++more)
+                    before[static_cast<std::size_t>(more + 1)] += away <= reach + more;
             }
         }
-        return solid == 0 ? 0 : static_cast<double>(before) / static_cast<double>(solid);
+        Backing share{};
+        for (std::size_t n = 0; n < share.size() && solid > 0; ++n)
+            share[n] = static_cast<double>(before[n]) / static_cast<double>(solid);
+        return share;
     }
 
   private:
@@ -126,18 +137,24 @@ std::vector<FurnitureLooks> furniture_looks(const SolidScene& solids,
                         2 * std::max(box.half[0], box.half[1])};
         if (out[o].fill < least_furniture_fill) continue;
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}})
-            for (const int way : {-1, 1})
-                out[o].backing =
-                    std::max(out[o].backing,
-                             sight.backed(box, axis, way, of[o], static_cast<std::int32_t>(o)));
+            for (const int way : {-1, 1}) {
+                const auto [less, usual, more] =
+                    sight.backed(box, axis, way, of[o], static_cast<std::int32_t>(o));
+                out[o].backing = std::max(out[o].backing, usual);
+                out[o].backing_range = {std::max(out[o].backing_range[0], less),
+                                        std::max(out[o].backing_range[1], more)};
+            }
     }
     return out;
 }
 
-double probability_closed(const FurnitureLooks& looks) {
+double log_odds_closed(const FurnitureLooks& looks, double backing) {
     constexpr double offset = -2.58, per_metre = 7.34;  // tests/fitting/fit_closed.py
-    const double backed_m = looks.height_m * looks.fill * looks.backing;
-    return 1 / (1 + std::exp(-(offset + per_metre * backed_m)));
+    return offset + per_metre * looks.height_m * looks.fill * backing;
+}
+
+double probability_closed(const FurnitureLooks& looks) {
+    return 1 / (1 + std::exp(-log_odds_closed(looks, looks.backing)));
 }
 
 ClosedBody closed_body(const FurnitureLooks& looks, double volume_m3, double board_kg_m3,

@@ -27,6 +27,9 @@ struct FurnitureLooks {
     double backing = 0;
     double box_side_m2 = 0;         // of all six sides of that box
     std::array<double, 2> box_m{};  // its level sides, the shorter one first
+    // Backing within a voxel less than 8 cm, and within a voxel more: where the voxels' borders
+    // fall is chance, and moves what lies between two surfaces by as much.
+    std::array<double, 2> backing_range{};
 };
 
 // Of each object, without what of it is of the room's shell. volumes_m3: by object.
@@ -38,6 +41,9 @@ std::vector<FurnitureLooks> furniture_looks(const SolidScene& solids,
 // backing, fitted on objects of generated rooms (docs/algorithms.md). What stands free in a room is
 // taken to be solid: nothing tells a block from a box of boards there.
 double probability_closed(const FurnitureLooks& looks);
+
+// Its log-odds, from one of these backings.
+double log_odds_closed(const FurnitureLooks& looks, double backing);
 
 // The share of the objects that it was fitted on that are closed furniture: 26 of 231.
 inline constexpr double closed_share = 0.11;

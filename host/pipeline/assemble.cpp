@@ -15,6 +15,7 @@
 #include "pipeline/explain.h"
 #include "pipeline/sentences.h"
 #include "pipeline/told_sentences.h"
+#include "pipeline/upright_pieces.h"
 #include "safety/directions.h"
 #include "safety/disturbances.h"
 #include "safety/earthquake/fragility.h"
@@ -360,6 +361,8 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_corrections(scene);
     note_unsettled_search(scene);
     note_crowded_objects(scene);
+    const std::string upright = upright_pieces_note(parts, objects, to_input);
+    if (!upright.empty()) scene.notes.push_back(upright);
     note_uncertain_barriers(scene);
     note_left_out(parts, safety, scene);
     note_short_hazard(scene);

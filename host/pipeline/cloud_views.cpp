@@ -144,6 +144,7 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
     } else if (out.cloud.has_viewpoint) {
         out.viewpoints = {out.cloud.viewpoint};
     } else if (out.cloud.nx.empty()) {
+        out.sides_guessed = true;
         out.viewpoints = std::move(views.viewpoints);
         for (const std::uint32_t s : surfels.of_point)
             out.viewpoint_of_point.push_back(views.viewpoint_of_surfel[s]);

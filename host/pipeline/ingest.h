@@ -56,6 +56,7 @@ struct Ingested {
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
     std::optional<Vec3> camera_up;
+    bool sides_guessed = false;  // as FrameHints::sides_guessed
     // Where it was found already: from all of a building, or as the axes of a map.
     std::optional<geometry::SceneFrame> frame;
     std::vector<geometry::StoreyHint> storeys;  // of a part of a building

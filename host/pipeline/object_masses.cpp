@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/object_masses.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "physics/alike.h"
@@ -25,6 +27,19 @@ std::vector<std::int32_t> members(std::span<const std::int32_t> object_of_primit
         if (object_of_primitive[p] == static_cast<std::int32_t>(object))
             out.push_back(static_cast<std::int32_t>(p));
     return out;
+}
+
+// What is closed by some ways that voxels may fall, and solid by others, weighs what it does in the
+// mean, and is off by what two such ways differ in the mean of squares, which covers both. A share
+// of how far closed and solid are apart.
+double two_ways_apart(double closed_ways) {
+    return std::sqrt(2 * closed_ways * (1 - closed_ways));
+}
+
+physics::BodyError scaled(physics::BodyError error, double factor) {
+    error.mass_kg *= factor;
+    for (double& e : error.center_m) e *= factor;
+    return error;
 }
 
 // Makes the shell that is known of one object.
@@ -70,15 +85,19 @@ ObjectMasses weigh_objects(const SolidScene& solids,
         if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) looks[o] = {};
     const physics::Alike alike = physics::alike_objects(looks);
     if (options.contents_kg_m3) {
-        const std::vector<double> closed = physics::probabilities_closed(looks, alike);
+        const std::vector<physics::ClosedOdds> odds = physics::closed_odds(looks, alike);
         for (std::size_t o = 0; o < objects; ++o) {
-            if (closed[o] <= 0.5) continue;
+            const double share = odds[o].closed_ways;
+            if (share == 0) continue;
             const physics::ClosedBody body = physics::closed_body(
                 looks[o], volume[o], options.density_kg_m3, *options.contents_kg_m3);
-            out.closed[o] = true;
-            out.contents_error[o] = body.error;
-            density[o] = body.density_kg_m3;
-            inertia_density[o] = body.inertia_density_kg_m3;
+            const double less_kg_m3 = options.density_kg_m3 - body.density_kg_m3;
+            out.closed[o] = share > 0.5;
+            out.contents_error[o] = scaled(body.error, share);
+            out.contents_error[o].mass_kg = std::hypot(
+                out.contents_error[o].mass_kg, two_ways_apart(share) * less_kg_m3 * volume[o]);
+            density[o] -= share * less_kg_m3;
+            inertia_density[o] += share * (body.inertia_density_kg_m3 - inertia_density[o]);
         }
     }
     for (std::size_t p = 0; p < bodies.size(); ++p) {

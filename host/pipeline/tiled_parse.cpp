@@ -157,7 +157,8 @@ geometry::SceneFrame find_frame(device::Device& device, const fs::path& folder,
     const Ingested part = ingest_part(device, std::move(cloud), cell_m);
     const geometry::Surfels surfels = geometry::make_surfels(
         device, part.cloud, 2 * cell_m, part.viewpoints, part.viewpoint_of_point);
-    return geometry::find_scene_frame(device, surfels, {options.up, part.camera_up});
+    return geometry::find_scene_frame(device, surfels,
+                                      {options.up, part.camera_up, part.sides_guessed});
 }
 
 // Where a layout is there some bin may be missing all the same, which was damaged.

@@ -269,6 +269,55 @@ TEST_F(Manhattan, ANarrowRoomIsNotLaidOnItsSide) {
     }
 }
 
+// A level floor, two upright walls and a roof that slopes down to a third.
+PointCloud attic(double slope_degrees) {
+    const double slope = std::tan(slope_degrees * M_PI / 180);
+    PointCloud out, gable;
+    add_rectangle(out, {0, 0, 0}, {3, 0, 0}, {0, 2.6, 0});
+    add_rectangle(out, {0, 0, 0}, {3, 0, 0}, {0, 0, 0.6 + 2.6 * slope});
+    add_rectangle(out, {0, 2.6, 0.6}, {3, 0, 0}, {0, -2.6, 2.6 * slope});
+    add_rectangle(gable, {0, 0, 0}, {0, 2.6, 0}, {0, 0, 0.6 + 2.6 * slope});
+    for (std::size_t n = 0; n < gable.size(); ++n) {
+        if (double{gable.z[n]} > 0.6 + (2.6 - double{gable.y[n]}) * slope) continue;
+        out.x.push_back(gable.x[n]);
+        out.y.push_back(gable.y[n]);
+        out.z.push_back(gable.z[n]);
+    }
+    return out;
+}
+
+TEST_F(Manhattan, ARoofMakesNoFloorOfAWall) {
+    const Vec3 eye{1.2, 0.8, 1.1};
+    for (const double degrees : {15.0, 30.0, 35.0, 45.0, 60.0}) {
+        const Surfels s = make_surfels(*device, attic(degrees), 0.04, {&eye, 1}, {});
+        for (const bool guessed : {false, true}) {
+            const SceneFrame frame =
+                find_scene_frame(*device, s, {.up = {}, .camera_up = {}, .sides_guessed = guessed});
+            EXPECT_LT(degrees_off(frame.axes[2], {0, 0, 1}), 0.5) << degrees;
+            EXPECT_EQ(frame.note, "") << degrees;
+        }
+        EXPECT_EQ(find_scene_frame(*device, s, {.up = Vec3{0, 0, 1}, .camera_up = {}}).note, "");
+    }
+}
+
+// Seen from the wrong side, as a guess may be: z is up, and the note says that it was not seen.
+TEST_F(Manhattan, WhatLooksTheSameFromBelowHasZUp) {
+    PointCloud floor, stairs;
+    add_rectangle(floor, {0, 0, 0}, {3, 0, 0}, {0, 2.5, 0});
+    for (int n = 0; n < 8; ++n) {
+        add_rectangle(stairs, {0, 0.26 * n, 0.18 * n}, {1, 0, 0}, {0, 0, 0.18});
+        add_rectangle(stairs, {0, 0.26 * n, 0.18 * (n + 1)}, {1, 0, 0}, {0, 0.26, 0});
+    }
+    const Vec3 below{0.5, 1.5, -3};
+    for (const PointCloud* cloud : {&floor, &stairs}) {
+        const Surfels s = make_surfels(*device, *cloud, 0.03, {&below, 1}, {});
+        const SceneFrame frame =
+            find_scene_frame(*device, s, {.up = {}, .camera_up = {}, .sides_guessed = true});
+        EXPECT_LT(degrees_off(frame.axes[2], {0, 0, 1}), 1);
+        EXPECT_NE(frame.note.find("ParseOptions::up"), std::string::npos) << frame.note;
+    }
+}
+
 TEST_F(Manhattan, ClustersFoldAntipodes) {
     const Surfels s = surfels(Eigen::Matrix3d::Identity(), true);
     const NormalClusters clusters = cluster_normals(*device, s, 3);

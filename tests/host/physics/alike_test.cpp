@@ -33,25 +33,39 @@ TEST(Alike, BoxesOfTheSameSidesAre) {
 }
 
 TEST(Alike, AreClosedTogether) {
-    const std::vector<double> p = probabilities_closed(things, alike_objects(things));
+    const std::vector<ClosedOdds> p = closed_odds(things, alike_objects(things));
     const auto log_odds = [](double x) { return std::log(x / (1 - x)); };
     const double both = log_odds(probability_closed(things[0])) +
                         log_odds(probability_closed(things[1])) - log_odds(closed_share);
     EXPECT_GT(probability_closed(things[0]), 0.5);
     EXPECT_LT(probability_closed(things[1]), 0.5);
-    EXPECT_NEAR(log_odds(p[0]), both, 1e-9);
-    EXPECT_NEAR(log_odds(p[1]), both, 1e-9);
-    EXPECT_NEAR(p[3], probability_closed(things[3]), 1e-12);
-    EXPECT_EQ(p[4], 0);
+    EXPECT_NEAR(log_odds(p[0].probability), both, 1e-9);
+    EXPECT_NEAR(log_odds(p[1].probability), both, 1e-9);
+    EXPECT_NEAR(p[3].probability, probability_closed(things[3]), 1e-12);
+    EXPECT_EQ(p[4].probability, 0);
 }
 
 // What fills too little of its box to tell has no say.
 TEST(Alike, NeedToFillTheirBoxes) {
     std::vector<FurnitureLooks> some{things[0], things[1]};
     some[1].fill = 0.1;
-    const std::vector<double> p = probabilities_closed(some, alike_objects(some));
-    EXPECT_NEAR(p[0], probability_closed(some[0]), 1e-12);
-    EXPECT_EQ(p[1], 0);
+    const std::vector<ClosedOdds> p = closed_odds(some, alike_objects(some));
+    EXPECT_NEAR(p[0].probability, probability_closed(some[0]), 1e-12);
+    EXPECT_EQ(p[1].probability, 0);
+}
+
+// A wall that a voxel more or less brings within reach tells now one kind, now the other.
+TEST(Alike, WhereVoxelsFallMayTellTheOtherKind) {
+    for (const double usual : {0.0, 1.0}) {
+        FurnitureLooks near = box(1.2, 0.3, 0.3, 1, usual);
+        const auto closed_ways = [&] {
+            return closed_odds(std::vector<FurnitureLooks>{near}, Alike(1))[0].closed_ways;
+        };
+        near.backing_range = {0, 1};
+        EXPECT_NEAR(closed_ways(), (1 + usual) / 3, 1e-3);
+        near.backing_range = {usual, usual};
+        EXPECT_EQ(closed_ways(), usual);
+    }
 }
 
 TEST(Alike, MassesShowTheirError) {

@@ -60,6 +60,11 @@ TEST(ClosedFurniture, LooksAreTheSameAskewToTheGrid) {
 TEST(ClosedFurniture, WhatStandsFreeHasNothingBehindIt) {
     EXPECT_NEAR(BesideWall{0.06}.looks().backing, 1, 1e-9) << "within 8 cm";
     EXPECT_EQ(BesideWall{0.1}.looks().backing, 0);
+    const auto range = [](double away) { return BesideWall{away}.looks().backing_range; };
+    EXPECT_NEAR(range(0.08)[1], 1, 1e-9) << "within a voxel more";
+    EXPECT_EQ(range(0.12)[1], 0);
+    EXPECT_EQ(range(0.06)[0], 0) << "not within a voxel less";
+    EXPECT_NEAR(range(0.04)[0], 1, 1e-9);
 }
 
 TEST(ClosedFurniture, ACabinetAtTheWallIsClosedAndNothingInTheRoom) {
