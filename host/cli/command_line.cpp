@@ -55,7 +55,7 @@ int with_output_written(int code) {
     if (code != 0 || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
     if (interrupted() == SIGPIPE) return 128 + SIGPIPE;
     throw Error(ErrorKind::input, std::string("standard output can't be written: ") +
-                                      std::strerror(errno != 0 ? errno : EIO));
+                                      (errno != 0 ? std::strerror(errno) : "it is full or closed"));
 }
 
 int run(std::span<const CommandEntry> entries, int argc, char** argv) {

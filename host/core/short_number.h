@@ -3,15 +3,9 @@
 
 #include <string>
 
-// Numbers as text, the same whatever locale the host program has set: printf() and streams would
-// write "0,25" there, or "1.000".
 namespace topple {
 
 // To six digits, without zeros at its end: "0.025".
 std::string short_number(double value);
-// As printf's %.3g: to so many digits.
-std::string to_digits(double value, int digits);
-// As printf's %.3f: with so many places after the point.
-std::string to_places(double value, int places);
 
 }  // namespace topple

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/short_number.h"
+#include "core/number_text.h"
 #include "geometry/manhattan_profile.h"
 
 namespace topple::geometry {

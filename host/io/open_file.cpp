@@ -9,9 +9,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <string>
-
-#include "io/text.h"
 
 namespace topple::io {
 namespace fs = std::filesystem;
@@ -128,6 +128,28 @@ std::size_t OpenFile::read(char* into, std::size_t bytes) const {
         done += static_cast<std::size_t>(got);
     }
     return done;
+}
+
+FileBytes read_file(const FileName& name, std::uint64_t limit) {
+    const OpenFile open(name);
+    const fs::path& file = name.path();
+    if (open.size == 0) fail(file, "is empty (0 bytes)");
+    if (open.size > limit) {
+        fail(file, "has " + counted(open.size, "byte") + ", more than the " +
+                       std::to_string(limit) + " that such a file may have");
+    }
+    FileBytes bytes;
+    try {
+        bytes.data = std::make_unique_for_overwrite<char[]>(open.size);
+    } catch (const std::bad_alloc&) {
+        fail(file, "has " + counted(open.size, "byte") + ", which don't fit into memory");
+    }
+    bytes.size = open.read(bytes.data.get(), open.size);
+    if (bytes.size < open.size) {
+        fail(file, "shrank while it was read: " + counted(open.size, "byte") + " expected, " +
+                       std::to_string(bytes.size) + " found");
+    }
+    return bytes;
 }
 
 }  // namespace topple::io

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "io/text.h"
+
 // The one way in which files of others are opened.
 namespace topple::io {
 
@@ -14,7 +16,6 @@ namespace topple::io {
 class FileName {
   public:
     FileName(std::filesystem::path named_by_user) : path_(std::move(named_by_user)) {}
-    FileName(const char* named_by_user) : path_(named_by_user) {}
     static FileName in(const std::filesystem::path& folder, const std::filesystem::path& name);
     // In the folder in which `file` lies. That folder is not the scan's, so that not even a link
     // within it is followed.
@@ -61,6 +62,9 @@ struct OpenFile {
     Descriptor descriptor;
     std::uint64_t size = 0;
 };
+
+// As the one of text.h.
+FileBytes read_file(const FileName& file, std::uint64_t limit = UINT64_MAX);
 
 // openat() below `folder`, which stays beneath it; for kernels without openat2() and for tests the
 // second, which follows no link at all. errno is EXDEV where a link or name leads out, ELOOP where

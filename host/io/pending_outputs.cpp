@@ -49,7 +49,9 @@ void unlink_all(int folder, int depth) {
             at += entry->length;
             const bool dots = name[0] == '.' && (name[1] == 0 || (name[1] == '.' && name[2] == 0));
             if (dots || (depth == 0 && std::strcmp(name, staging_lock) == 0)) continue;
-            if (::unlinkat(folder, name, 0) == 0 || depth == deepest) continue;
+            if (::unlinkat(folder, name, 0) == 0 || ::unlinkat(folder, name, AT_REMOVEDIR) == 0 ||
+                depth == deepest)
+                continue;
             const int inner =
                 ::openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
             if (inner < 0) continue;

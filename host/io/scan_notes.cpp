@@ -4,6 +4,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/open_file.h"
 #include "io/text.h"
 
 namespace topple::io {

@@ -109,6 +109,7 @@ StagingFolder::StagingFolder(StagingFolder&& other) noexcept
 
 StagingFolder::~StagingFolder() {
     if (path_.empty()) return;
+    lock_ = Descriptor();  // one more to look into the folder by, where there are few
     remove_tree(path_.c_str());
     forget_pending(slot_);
 }

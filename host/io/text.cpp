@@ -8,7 +8,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <new>
+
+#include "core/number_text.h"
+#include "io/open_file.h"
 
 namespace topple::io {
 namespace fs = std::filesystem;
@@ -72,26 +74,8 @@ std::string sufficient_bytes_text(std::uint64_t bytes) {
     return bytes_text_of(std::ceil(value / last) * last * unit, 3);
 }
 
-FileBytes read_file(const FileName& name, std::uint64_t limit) {
-    const OpenFile open(name);
-    const fs::path& file = name.path();
-    if (open.size == 0) fail(file, "is empty (0 bytes)");
-    if (open.size > limit) {
-        fail(file, "has " + counted(open.size, "byte") + ", more than the " +
-                       std::to_string(limit) + " that such a file may have");
-    }
-    FileBytes bytes;
-    try {
-        bytes.data = std::make_unique_for_overwrite<char[]>(open.size);
-    } catch (const std::bad_alloc&) {
-        fail(file, "has " + counted(open.size, "byte") + ", which don't fit into memory");
-    }
-    bytes.size = open.read(bytes.data.get(), open.size);
-    if (bytes.size < open.size) {
-        fail(file, "shrank while it was read: " + counted(open.size, "byte") + " expected, " +
-                       std::to_string(bytes.size) + " found");
-    }
-    return bytes;
+FileBytes read_file(const fs::path& file, std::uint64_t limit) {
+    return read_file(FileName(file), limit);
 }
 
 bool parse_number(std::string_view token, double& value) {

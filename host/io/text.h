@@ -11,7 +11,6 @@
 
 #include "core/printable.h"
 #include "core/short_number.h"
-#include "io/open_file.h"
 #include "topple/error.h"
 
 // What the readers share: files as bytes, lines with numbers, tokens, numbers, and messages that
@@ -20,8 +19,6 @@ namespace topple::io {
 
 using topple::printable;
 using topple::short_number;
-using topple::to_digits;
-using topple::to_places;
 // As printable(), between double quotes.
 std::string in_quotes(std::string_view text);
 // A path, whole.
@@ -51,7 +48,7 @@ struct FileBytes {
 
 // Reads a regular file whole. Throws Error(input) where it is missing, no regular file, unreadable,
 // empty, larger than `limit` bytes, or where memory does not suffice.
-FileBytes read_file(const FileName& file, std::uint64_t limit = UINT64_MAX);
+FileBytes read_file(const std::filesystem::path& file, std::uint64_t limit = UINT64_MAX);
 
 // Letters of ASCII alone, whatever the locale.
 std::string lower_case(std::string_view text);

@@ -6,6 +6,7 @@
 
 #include "child/process.h"
 #include "child/program.h"
+#include "core/number_text.h"
 #include "io/text.h"
 #include "mujoco/message.h"
 #include "topple/error.h"

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/number_text.h"
 #include "geometry/sensor_places.h"
 #include "geometry/virtual_views.h"
 #include "io/text.h"
@@ -41,7 +42,8 @@ constexpr std::size_t most_sensors = 24;
 constexpr double most_hidden = 0.5;
 
 std::string position_text(const Vec3& p) {
-    return "(" + to_places(p[0], 2) + ", " + to_places(p[1], 2) + ", " + to_places(p[2], 2) + ")";
+    return std::string("(") + to_places(p[0], 2) + ", " + to_places(p[1], 2) + ", " +
+           to_places(p[2], 2) + ")";
 }
 
 constexpr auto places_must = "places of sensors must be in the points' frame, and in metres.";

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/number_text.h"
 #include "core/vectors.h"
 #include "io/text.h"
 #include "pipeline/ingest.h"

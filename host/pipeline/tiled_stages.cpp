@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include "core/number_text.h"
 #include "core/thread_pool.h"
 #include "io/text.h"
 #include "pipeline/block_stage.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/short_number.h"
+#include "core/number_text.h"
 #include "report/drawing_parts.h"
 
 namespace topple::report {

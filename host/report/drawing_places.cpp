@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "core/short_number.h"
+#include "core/number_text.h"
 #include "report/drawing_parts.h"
 
 namespace topple::report {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "core/short_number.h"
+#include "core/number_text.h"
 #include "core/vectors.h"
 #include "io/palette.h"
 #include "report/scene_image.h"

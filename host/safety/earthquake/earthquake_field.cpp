@@ -7,8 +7,8 @@
 #include <memory>
 #include <numbers>
 
+#include "core/number_text.h"
 #include "core/random.h"
-#include "core/short_number.h"
 #include "core/thread_pool.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"

@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "core/number_text.h"
 #include "io/text.h"
 #include "physics/landscape.h"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "core/number_text.h"
 #include "core/room_measures.h"
-#include "core/short_number.h"
 #include "safety/human/human_field.h"
 #include "safety/objects.h"
 

@@ -5,6 +5,7 @@
 #include <locale>
 #include <string>
 
+#include "core/number_text.h"
 #include "device/devices.h"
 #include "io/scene_json.h"
 #include "io/text.h"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "core/short_number.h"
+#include "core/number_text.h"
 
 #include <array>
 #include <charconv>
+
+#include "core/short_number.h"
 
 namespace topple {
 namespace {
