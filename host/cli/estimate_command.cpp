@@ -15,6 +15,7 @@
 #include "io/text.h"
 #include "pipeline/estimate.h"
 #include "topple/device.h"
+#include "topple/option_names.h"
 
 namespace topple::cli {
 namespace {
@@ -63,6 +64,7 @@ void print_json(const Estimate& e) {
         {"ground_m2", e.ground_m2},
         {"rough_surfels", e.rough_surfels},
         {"box_voxels", e.box_voxels},
+        {"unit_hint", in_words_of(Interface::command_line, e.unit_hint)},
         {"seconds", e.seconds},
         {"processor_s", e.processor_s},
         {"probe_s", e.probe_s},
@@ -88,6 +90,8 @@ int run(EstimateArguments& a) {
                         static_cast<double>(e.points) / 1e6);
         else
             std::printf("input    %llu points\n", static_cast<unsigned long long>(e.points));
+        if (!e.unit_hint.empty())
+            std::printf("unit     %s\n", in_words_of(Interface::command_line, e.unit_hint).c_str());
         std::printf("surface  about %.3g m2\n", e.surface_m2);
         if (e.tiled)
             std::printf("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);

@@ -21,8 +21,9 @@ struct SceneFrame {
 };
 
 struct FrameHints {
-    std::optional<Vec3> up;         // the user's: always wins, with a note where it looks wrong
-    std::optional<Vec3> camera_up;  // mean -y axis of the cameras, if there were any
+    std::optional<Vec3> up;           // the user's: always wins, with a note where it looks wrong
+    std::optional<Vec3> camera_up;    // mean -y axis of the cameras, if there were any
+    std::optional<Vec3> format_up{};  // by the file's format, which not every writer keeps to
 };
 
 // Clusters the normals on the sphere (kernel normal_cluster: spherical k-means with antipodes

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "topple/parse.h"
 
@@ -30,6 +31,7 @@ struct Estimate {
     std::uint64_t pixels = 0;
     bool views = false;
     double patches_m = 0, ground_m2 = 0, rough_surfels = 0, box_voxels = 0, probe_s = 0;
+    std::string unit_hint;          // as a note of the parse has it; "" where there is none
     std::uint64_t least_bytes = 0;  // with a max_memory_bytes below it parse() refuses
     std::uint64_t memory_bytes = 0, work_bytes = 0, output_bytes = 0;
 };
