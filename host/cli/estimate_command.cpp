@@ -55,6 +55,7 @@ void print_json(const Estimate& e) {
         {"rough_surfels", e.rough_surfels},
         {"box_voxels", e.box_voxels},
         {"surface_voxels", e.surface_voxels},
+        {"unit_hint", in_words_of(Interface::command_line, e.unit_hint)},
         {"seconds", e.seconds},
         {"processor_s", e.processor_s},
         {"probe_s", e.probe_s},
@@ -81,6 +82,8 @@ int run(EstimateArguments& a) {
                   static_cast<unsigned long long>(e.frames), static_cast<double>(e.points) / 1e6);
         else
             print("input    %llu points\n", static_cast<unsigned long long>(e.points));
+        if (!e.unit_hint.empty())
+            print("unit     %s\n", in_words_of(Interface::command_line, e.unit_hint).c_str());
         print("surface  about %.3g m2\n", e.surface_m2);
         if (e.tiled)
             print("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);

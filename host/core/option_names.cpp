@@ -16,6 +16,7 @@ constexpr auto names = std::to_array<OptionName>({
     {"ParseOptions::unit_m = 0.001", "--unit mm", "unit_m = 0.001", "unit_m=0.001"},
     {"ParseOptions::unit_m = 0.01", "--unit cm", "unit_m = 0.01", "unit_m=0.01"},
     {"ParseOptions::unit_m = 0.0254", "--unit in", "unit_m = 0.0254", "unit_m=0.0254"},
+    {"ParseOptions::unit_m = 0.3048", "--unit ft", "unit_m = 0.3048", "unit_m=0.3048"},
     {"ParseOptions::isolate = false", "--no-isolate", "without_isolation = 1", "isolate=False"},
     {"ParseOptions::device", "--backend", "device", "device"},
     {"ParseOptions::voxel_m", "--voxel", "voxel_m", "voxel_m"},

@@ -25,6 +25,7 @@ struct FrameHints {
     std::optional<Vec3> camera_up;  // mean -y axis of the cameras, if there were any
     // Whether nothing but the looks of the scene told which side of each surface was seen.
     bool sides_guessed = false;
+    std::optional<Vec3> format_up{};  // by the file's format, which not every writer keeps to
 };
 
 // Clusters the normals on the sphere (kernel normal_cluster: spherical k-means with antipodes

@@ -32,8 +32,9 @@ constexpr double least_upright_share = 0.3;
 // turned. Below turned_floor, what is turned is noise.
 constexpr double extent_weight = -1.75, level_weight = 1.9, clutter_weight = 1.4,
                  lone_end_weight = 1.1, turned_weight = 2.3, turned_floor = 0.02;
-// Odds of the input's z, give or take a tilt, and of its y, either way, against any direction.
-constexpr double tilt_degrees = 10, odds_of_z = 100, odds_of_y = 5;
+// Odds of the input's z, give or take a tilt, and of its y, either way, against any direction; of
+// what the file's format says that up is.
+constexpr double tilt_degrees = 10, odds_of_z = 50, odds_of_y = 5, odds_of_format = 20;
 // Farther from z than this, up is told to the user.
 constexpr double customary_degrees = 25;
 // Sides that were guessed are never surer than this; less sure, they don't tell up from down.
@@ -128,12 +129,14 @@ Candidate with_camera(const Seen& seen, const std::vector<Candidate>& candidates
     return best;
 }
 
-// What is known of a direction before looking: most inputs have z up, some have y or -y up.
-double prior_odds(const Vec3& up) {
+// What is known of a direction before looking: of a format with an up of its own, most have that;
+// else most inputs have z up, some have y or -y up.
+double prior_odds(const Vec3& up, const std::optional<Vec3>& format_up) {
     const auto near = [&](const Vec3& axis) {
         const double off = degrees_between(up, axis) / tilt_degrees;
         return std::exp(-off * off / 2);
     };
+    if (format_up) return 1 + odds_of_format * near(*format_up);
     return 1 + odds_of_z * near({0, 0, 1}) + odds_of_y * (near({0, 1, 0}) + near({0, -1, 0}));
 }
 
@@ -156,21 +159,22 @@ std::array<double, 2> end_odds(const Profile& p, const Seen& seen) {
 
 // Without a camera: rooms are wider than high, what stands is turned about up alone, level surface
 // within faces up, and things lie low.
-Candidate without_camera(const Seen& seen, const std::vector<Candidate>& candidates) {
+Candidate without_camera(const Seen& seen, const std::vector<Candidate>& candidates,
+                         const std::optional<Vec3>& format_up) {
     std::vector<Candidate> all;
     Candidate best;
     for (const Candidate& c : candidates) {
         const Profile p = seen.along(c.up);
-        if (p.along + p.against < least_plane_share) continue;
+        if (p.along + p.against < least_plane_share && c.up != format_up) continue;
         const auto [up, down] = end_odds(p, seen);
         const bool open = seen.sides_right < unsure_guess && p.lone_place == 0;
         for (const double sign : {1.0, -1.0}) {
             Candidate option = c;
             option.up = times(c.up, sign);
-            option.score *= std::exp(sign > 0 ? up : down) * prior_odds(option.up);
-            if (degrees_between(option.up, {0, 0, 1}) >= customary_degrees)
+            option.score *= std::exp(sign > 0 ? up : down) * prior_odds(option.up, format_up);
+            if (!format_up && degrees_between(option.up, {0, 0, 1}) >= customary_degrees)
                 option.doubt = by_looks;
-            else if (open)
+            else if (!format_up && open)
                 option.doubt = either_side;
             keep_better(best, option);
             all.push_back(option);
@@ -252,17 +256,31 @@ struct FoundUp : UpChoice {
     bool level = false;  // by level surface, of which no camera looked straight at a wall
 };
 
+// An up that was found where the file's format says what is up.
+UpChoice with_format(const Vec3& up, const Vec3& format_up, bool manhattan) {
+    if (degrees_between(up, format_up) <= contradicted_degrees) return {up, "format", ""};
+    return {up, manhattan ? "manhattan" : "dominant-plane",
+            "By its format the file has " + text_of(format_up) + " up, but its surfaces show " +
+                text_of(up) +
+                ", which was taken; if it is wrong, say where up is by ParseOptions::up."};
+}
+
 FoundUp find_up(const Seen& seen, const std::vector<Vec3>& directions,
-                const std::vector<Vec3>& manhattan, const std::optional<Vec3>& camera) {
-    const FoundUp assumed{{camera.value_or(Vec3{0, 0, 1}), "assumed", not_found}};
+                const std::vector<Vec3>& manhattan, const std::optional<Vec3>& camera,
+                const std::optional<Vec3>& format_up) {
+    const FoundUp assumed{
+        {camera.value_or(format_up.value_or(Vec3{0, 0, 1})), "assumed", not_found}};
     if (seen.normals.size() == 0) return assumed;
 
     std::vector<Candidate> candidates;
     // An axis of the best triple goes before a single direction that is no better.
     for (const Vec3& axis : manhattan) candidates.push_back({axis, true, 1.1});
     for (const Vec3& axis : directions) candidates.push_back({axis, false, 1.0});
-    const Candidate best =
-        camera ? with_camera(seen, candidates, *camera) : without_camera(seen, candidates);
+    if (format_up) candidates.push_back({*format_up, false, 1.0});
+    const Candidate best = camera ? with_camera(seen, candidates, *camera)
+                                  : without_camera(seen, candidates, format_up);
+    if (best.score > 0 && format_up && !camera)
+        return {with_format(refine_axis(seen.normals, best.up), *format_up, best.manhattan), true};
     if (best.score > 0) {
         const Vec3 up = refine_axis(seen.normals, best.up);
         return {{up, best.manhattan ? "manhattan" : "dominant-plane",
@@ -296,9 +314,10 @@ UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
     std::optional<Vec3> camera;
     if (hints.camera_up && dot(*hints.camera_up, *hints.camera_up) > 0)
         camera = unit_or_zero(*hints.camera_up);
-    if (!camera && !hints.sides_guessed && normals.size() > 0) camera = implied_camera(normals);
+    if (!camera && !hints.format_up && !hints.sides_guessed && normals.size() > 0)
+        camera = implied_camera(normals);
     const Seen seen = look(surfels, normals, directions, hints.sides_guessed);
-    const FoundUp found = find_up(seen, directions, manhattan, camera);
+    const FoundUp found = find_up(seen, directions, manhattan, camera, hints.format_up);
     if (!hints.up || !(dot(*hints.up, *hints.up) > 0)) return found;
     const Vec3 given = unit_or_zero(*hints.up);
     return {given, "given", doubt_of_given(seen, given, found, camera)};

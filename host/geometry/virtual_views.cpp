@@ -94,6 +94,7 @@ class Looking {
         if (!sides_known_) agree_on_sides();
         sides_.spread();
         leave_out_behind();
+        out_.sides_believed = sides_known_;
         out_.viewpoints = out_.eyes;
         for (std::size_t i = 0; i < s_.size(); ++i) {
             std::uint32_t& from = out_.viewpoint_of_surfel[i];

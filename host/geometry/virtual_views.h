@@ -39,6 +39,7 @@ struct VirtualViews {
     // Of the surfels that are said to have been seen from a known eye, those that something hides
     // from there.
     double hidden_share = 0;
+    bool sides_believed = false;  // they were said to be known, and the first place bore it out
     // For each surfel a viewpoint in front of it; empty where no eye was found.
     std::vector<std::uint32_t> viewpoint_of_surfel;
 };

@@ -23,10 +23,11 @@ PointCloud parse_ply(const std::filesystem::path& file, std::string_view bytes,
 PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes,
                      const CloudSink* sink = nullptr);
 
-// One point a line, separated by white space, commas or semicolons; # and // start comments. A line
-// of names may come first: then x, y, z (and nx, ny, nz, and r, g, b or red, green, blue) are found
-// by name. Without one the first three columns are the point, and the next three of exactly six are
-// normals if their length is 1, or colours if all are whole numbers from 0 to 255.
+// One point a line, separated by white space, commas or semicolons, of which commas may be those of
+// decimals (text_columns.h); # and // start comments. A line of names may come first: then x, y, z
+// (and nx, ny, nz, and r, g, b or red, green, blue) are found by name, in other words of surveyors
+// and languages, too. Without one the first three columns are the point, and the next three of
+// exactly six are normals if their length is 1, or colours if all are whole numbers from 0 to 255.
 // A first line of one whole number is the count of points (.pts).
 PointCloud parse_xyz(const std::filesystem::path& file, std::string_view bytes,
                      const CloudSink* sink = nullptr);

@@ -56,6 +56,7 @@ class GltfChecks {
         : file_(file), root_(root), binary_bytes_(binary_bytes), text_bytes_(text_bytes) {}
 
     void check() {
+        check_extensions();
         check_buffers();
         check_views();
         check_accessors();
@@ -64,6 +65,55 @@ class GltfChecks {
     }
 
   private:
+    [[noreturn]] void not_read(const std::string& extension) const {
+        const bool draco = extension == "KHR_draco_mesh_compression";
+        fail(file_, "needs glTF's extension " + printable(extension, 80) +
+                        ", which is not read: export it without" +
+                        (draco ? ", or decompress it: gltf-pipeline -i FILE -o OUT.glb" : ""));
+    }
+
+    // Those that say where surfaces are, and those that leave that as it is.
+    void check_extensions() const {
+        static constexpr std::array<std::string_view, 4> shape{
+            "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
+            "EXT_mesh_gpu_instancing"};
+        static constexpr std::array<std::string_view, 12> harmless{
+            "KHR_mesh_quantization", "KHR_materials_", "KHR_lights_",    "KHR_texture_",
+            "EXT_texture_",          "KHR_animation_", "KHR_xmp",        "EXT_lights_",
+            "MSFT_texture_",         "ADOBE_",         "EXT_structural", "EXT_mesh_features"};
+        for (const json& name : list(root_, "extensionsRequired")) {
+            if (!name.is_string()) fail(file_, "\"extensionsRequired\" must be a list of names");
+            const auto& text = name.get_ref<const std::string&>();
+            if (std::ranges::none_of(
+                    harmless, [&](std::string_view begin) { return text.starts_with(begin); }))
+                not_read(text);
+        }
+        // Some files use one without asking for it.
+        const auto check = [&](const json& object) {
+            const auto extensions = object.find("extensions");
+            if (extensions == object.end() || !extensions->is_object()) return;
+            for (const std::string_view name : shape)
+                if (extensions->contains(std::string(name))) not_read(std::string(name));
+        };
+        for (const json& view : entries(root_, "bufferViews")) check(view);
+        for (const json& node : entries(root_, "nodes")) check(node);
+        for (const json& mesh : entries(root_, "meshes")) {
+            for (const json& primitive : entries(mesh, "primitives")) {
+                if (!primitive.contains("attributes") || has_data(primitive["attributes"]))
+                    continue;
+                check(primitive);
+            }
+        }
+    }
+
+    // Whether the places of a primitive's corners lie in a buffer, uncompressed.
+    bool has_data(const json& attributes) const {
+        const json& accessors = entries(root_, "accessors");
+        const auto n =
+            attributes.is_object() ? whole(attributes, "POSITION", UINT64_MAX) : UINT64_MAX;
+        return n < accessors.size() && accessors[n].contains("bufferView");
+    }
+
     // A count or offset; `otherwise` where there is none.
     std::uint64_t whole(const json& object, const char* key, std::uint64_t otherwise) const {
         const auto found = object.find(key);
@@ -161,7 +211,12 @@ class GltfChecks {
     void check_accessors() {
         for (const json& accessor : entries(root_, "accessors")) {
             const std::string name = "accessor " + std::to_string(counts_.size());
-            if (accessor.contains("sparse")) fail(file_, name + " is sparse, which is not read");
+            const std::uint64_t size = element_size(accessor, name);
+            // Without a view it is all zeros, but for what a sparse one changes.
+            if (!accessor.contains("bufferView")) {
+                counts_.push_back(whole(accessor, "count", 0));
+                continue;
+            }
             const auto view = whole(accessor, "bufferView", UINT64_MAX);
             const auto offset = whole(accessor, "byteOffset", 0);
             const auto count = whole(accessor, "count", 0);
@@ -170,7 +225,6 @@ class GltfChecks {
                      name + " promises more than its buffer view holds; the file is damaged");
             };
             if (view >= views_.size() || offset > views_[view].bytes) promises();
-            const std::uint64_t size = element_size(accessor, name);
             const std::uint64_t left = views_[view].bytes - offset;
             const std::uint64_t step = std::max(size, views_[view].stride);
             if (count > 0 && (size > left || count - 1 > (left - size) / step)) promises();

@@ -22,4 +22,19 @@ std::string obj_surface(std::string_view bytes) {
     return out;
 }
 
+std::string obj_points(std::string_view surface) {
+    std::string rows;
+    Lines lines(surface);
+    for (std::string_view line; lines.next(line);) {
+        const auto keyword = next_token(line);
+        if (keyword == "f") return {};
+        if (keyword == "v") rows.append(line).append(1, '\n');
+    }
+    std::size_t columns = 0;
+    Lines first(rows);
+    std::string_view row;
+    for (first.next(row); !next_token(row).empty();) ++columns;
+    return rows.empty() || columns < 6 ? rows : "x y z red green blue\n" + rows;
+}
+
 }  // namespace topple::io

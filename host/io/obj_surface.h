@@ -11,4 +11,7 @@ namespace topple::io {
 // rest makes a kilobyte of each.
 std::string obj_surface(std::string_view bytes);
 
+// Of one without faces: its vertices as text with a point a line (formats.h); else "".
+std::string obj_points(std::string_view surface);
+
 }  // namespace topple::io

@@ -13,6 +13,7 @@
 #include "io/formats.h"
 #include "io/mapped_file.h"
 #include "io/mesh_checks.h"
+#include "io/stated_unit.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -27,6 +28,11 @@ std::string lower_extension(const std::filesystem::path& file) {
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return extension;
+}
+
+bool is_text(const std::string& extension) {
+    constexpr std::array<std::string_view, 5> texts{".xyz", ".txt", ".csv", ".asc", ".pts"};
+    return std::ranges::find(texts, extension) != texts.end();
 }
 
 // Whether the first line that says anything is of three numbers or more.
@@ -90,9 +96,7 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
     if (extension == ".pcd") return parse_pcd(file, text, sink);
     if (starts_as_las(text) || extension == ".las" || extension == ".laz")
         return parse_las(file, text, unit_m, sink);
-    for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
-        if (extension == known) return parse_xyz(file, text, sink);
-    }
+    if (is_text(extension)) return parse_xyz(file, text, sink);
     for (const char* known : {".e57", ".mcap", ".db3", ".bag", ".r3d", ".zip"}) {
         if (extension == known) {
             fail(file,
@@ -106,16 +110,38 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
                    ".gltf, .bt, .ot or .vdb file, or a folder with depth/*.png");
 }
 
-void scale(PointCloud& cloud, double unit_m) {
-    for (auto* values : {&cloud.x, &cloud.y, &cloud.z}) {
-        for (float& v : *values) v = static_cast<float>(v * unit_m);
+// `unit_m` where it was asked for, else what the file says.
+StatedUnit unit_of(const std::filesystem::path& file, std::string_view text, double unit_m) {
+    if (unit_m != 1) return {{unit_m, unit_m, unit_m}, ""};
+    const auto extension = lower_extension(file);
+    std::optional<StatedUnit> stated;
+    if (starts_as_las(text)) {
+        stated = unit_of_las(file, text);
+    } else if (extension == ".stl") {
+        constexpr std::size_t header = 80;
+        stated = unit_in_head(text.substr(0, header));
+    } else if (!text.starts_with("glTF") && extension != ".gltf") {
+        stated = unit_in_head(leading_comments(text));
+        if (!stated && is_text(extension)) stated = unit_of_names(text);
     }
-    for (auto* values : {&cloud.viewpoint_x, &cloud.viewpoint_y, &cloud.viewpoint_z}) {
-        for (float& v : *values) v = static_cast<float>(v * unit_m);
+    return stated.value_or(StatedUnit{});
+}
+
+void scale(PointCloud& cloud, const StatedUnit& unit) {
+    if (unit.metres == Vec3{1, 1, 1}) return;
+    const std::array<std::array<std::vector<float>*, 2>, 3> axes{{{&cloud.x, &cloud.viewpoint_x},
+                                                                  {&cloud.y, &cloud.viewpoint_y},
+                                                                  {&cloud.z, &cloud.viewpoint_z}}};
+    for (std::size_t a = 0; a < 3; ++a) {
+        for (std::vector<float>* values : axes[a])
+            for (float& v : *values) v = static_cast<float>(v * unit.metres[a]);
+        for (Vec3* place : {&cloud.viewpoint, &cloud.origin_m, &cloud.offset_m})
+            (*place)[a] *= unit.metres[a];
     }
-    for (double& v : cloud.viewpoint) v *= unit_m;
-    for (double& v : cloud.origin_m) v *= unit_m;
-    for (double& v : cloud.offset_m) v *= unit_m;
+}
+
+void note_unit(const StatedUnit& unit, PointCloud& cloud) {
+    if (std::string note = unit_note(unit); !note.empty()) cloud.notes.push_back(std::move(note));
 }
 
 }  // namespace
@@ -128,12 +154,26 @@ void note_offset(PointCloud& cloud) {
         " m, about; offset_m in scene.json has the exact way back.");
 }
 
+std::string unit_note_of(const std::filesystem::path& file, double unit_m) {
+    const MappedFile bytes(file);
+    return unit_note(unit_of(file, bytes.text(), unit_m));
+}
+
 bool is_mesh(const std::filesystem::path& file) {
     const MappedFile bytes(file);
     const std::string_view text = bytes.text();
     if (starts_as_ply(text)) return ply_has_faces(text);
     if (text.starts_with("# .PCD")) return false;
     return mesh_format(text, lower_extension(file)).has_value();
+}
+
+std::optional<Vec3> up_of_format(const std::filesystem::path& file) {
+    const MappedFile bytes(file);
+    const std::string_view text = bytes.text();
+    if (starts_as_ply(text) || text.starts_with("# .PCD")) return std::nullopt;
+    const auto format = mesh_format(text, lower_extension(file));
+    if (format != MeshFormat::glb && format != MeshFormat::gltf) return std::nullopt;
+    return Vec3{0, 1, 0};
 }
 
 bool can_stream(const std::filesystem::path& file) {
@@ -145,13 +185,15 @@ bool can_stream(const std::filesystem::path& file) {
 
 PointCloud stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink) {
     const MappedFile bytes(file);
+    const StatedUnit unit = unit_of(file, bytes.text(), unit_m);
     const CloudSink scaled = [&](PointCloud portion) {
-        if (unit_m != 1) scale(portion, unit_m);
+        scale(portion, unit);
         sink(std::move(portion));
         bytes.release();
     };
-    PointCloud rest = parse_cloud(file, bytes.text(), unit_m, {}, &scaled);
-    if (unit_m != 1) scale(rest, unit_m);
+    PointCloud rest = parse_cloud(file, bytes.text(), unit.metres[0], {}, &scaled);
+    scale(rest, unit);
+    note_unit(unit, rest);
     note_offset(rest);
     return rest;
 }
@@ -165,8 +207,11 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m,
              "or "
              "map, or a folder with both");
     }
-    PointCloud cloud = parse_cloud(file, read_file(file).text(), unit_m, sampling);
-    if (unit_m != 1) scale(cloud, unit_m);
+    const FileBytes bytes = read_file(file);
+    const StatedUnit unit = unit_of(file, bytes.text(), unit_m);
+    PointCloud cloud = parse_cloud(file, bytes.text(), unit.metres[0], sampling);
+    scale(cloud, unit);
+    note_unit(unit, cloud);
     note_offset(cloud);
     note_extent(cloud);
     return cloud;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "io/cloud_builder.h"
 #include "io/read_mesh.h"
@@ -16,7 +18,8 @@ namespace topple::io {
 // first bytes and, where those say nothing, by its extension (.ply, .pcd; .xyz, .txt, .csv, .asc,
 // .pts are XYZ; .obj, .stl, .glb, .gltf and a PLY with faces are meshes).
 //
-// Metres, the file's own frame: `unit_m` is how many metres its coordinates' unit has. Points with
+// Metres, the file's own frame: `unit_m` is how many metres its coordinates' unit has; of 1 it is
+// the unit that the file states, if it does (stated_unit.h), with a note. Points with
 // a coordinate that is not finite are left out and counted in `dropped`; a file without a finite
 // point, or with a coordinate beyond 1e6 units, is refused. Normals are kept, made unit length,
 // where the file has them (0, 0, 0 for single points without one).
@@ -25,6 +28,13 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1,
 
 // Notes how the points were moved, if they were.
 void note_offset(PointCloud& cloud);
+
+// What is to be said of the unit that such a file states, and that is taken where `unit_m` is 1,
+// the default; "" where there is none, or it is the metre.
+std::string unit_note_of(const std::filesystem::path& file, double unit_m);
+
+// Where up is by the format of a file: glTF's is y.
+std::optional<Vec3> up_of_format(const std::filesystem::path& file);
 
 // Whether read_cloud() takes it for a mesh, or a cloud with faces. Throws Error(input) where it
 // can't be opened.

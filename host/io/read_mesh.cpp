@@ -13,8 +13,11 @@
 
 #include "io/cloud_builder.h"
 #include "io/files_beside.h"
+#include "io/formats.h"
+#include "io/gltf_plain.h"
 #include "io/mesh_checks.h"
 #include "io/mesh_colours.h"
+#include "io/mesh_sides.h"
 #include "io/obj_surface.h"
 #include "io/text.h"
 #include "io/triangulate.h"
@@ -40,8 +43,29 @@ class Triangles {
     Triangles(const std::filesystem::path& file, const aiScene& scene, std::uint64_t file_bytes)
         : scene_(scene) {
         place(file, file_bytes);
-        each([&](const Triangle& t) { area_ += t.area; });
+        each([&](const Triangle& t) {
+            area_ += t.area;
+            ++count_;
+        });
         counted_ = true;
+    }
+
+    // Has those turned that face the wrong side (mesh_sides.h); returns what there is to say.
+    std::vector<std::string> turn(double unit_m) {
+        constexpr std::uint64_t most = 5'000'000;  // beyond them it takes too much memory
+        if (count_ > most) return {};
+        TriangleMesh mesh;
+        each([&](const Triangle& t) {
+            std::array<Vec3, 3> corners{};
+            for (std::size_t c = 0; c < 3; ++c)
+                corners[c] = {t.corner[c].x, t.corner[c].y, t.corner[c].z};
+            // As the triangle faces, which a node that mirrors changes.
+            if (mirrored_) std::swap(corners[1], corners[2]);
+            mesh.add(corners);
+        });
+        MeshSides sides = find_sides(mesh, unit_m);
+        turned_ = std::move(sides.turned);
+        return sides.notes();
     }
 
     double area() const { return area_; }
@@ -49,9 +73,24 @@ class Triangles {
 
     template <class Use>
     void each(const Use& use) {
+        given_ = 0;
         for (const Placed& at : placed_) {
             for (unsigned n = 0; n < at.node->mNumMeshes; ++n)
                 each_of(at.node->mMeshes[n], at.to_world, use);
+        }
+    }
+
+    // All corners, as use(place, mesh, vertex).
+    template <class Use>
+    void each_vertex(const Use& use) const {
+        for (const Placed& at : placed_) {
+            for (unsigned n = 0; n < at.node->mNumMeshes; ++n) {
+                const std::uint32_t mesh = at.node->mMeshes[n];
+                for (std::uint32_t v = 0; v < scene_.mMeshes[mesh]->mNumVertices; ++v) {
+                    const aiVector3D& p = scene_.mMeshes[mesh]->mVertices[v];
+                    use(at.to_world * aiVector3t<double>(p.x, p.y, p.z), mesh, v);
+                }
+            }
         }
     }
 
@@ -88,6 +127,8 @@ class Triangles {
     template <class Use>
     void each_of(std::uint32_t number, const aiMatrix4x4t<double>& to_world, const Use& use) {
         const aiMesh& mesh = *scene_.mMeshes[number];
+        // A node that mirrors has its faces turn the other way (glTF 2.0, 3.7.4).
+        mirrored_ = to_world.Determinant() < 0;
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
             const aiFace& face = mesh.mFaces[f];
             polygon_.clear();
@@ -115,12 +156,15 @@ class Triangles {
         };
         Triangle t{{at(corners[0]), at(corners[1]), at(corners[2])}, {}, 0, mesh, vertex};
         t.normal = (t.corner[1] - t.corner[0]) ^ (t.corner[2] - t.corner[0]);
+        if (mirrored_) t.normal *= -1.0;
         const double length = t.normal.Length();
         if (!std::isfinite(length)) {
             broken_ += !counted_;
         } else if (length > 0) {
             t.normal /= length;
             t.area = length / 2;
+            if (!turned_.empty() && turned_[given_]) t.normal *= -1.0;
+            ++given_;
             use(t);
         }
     }
@@ -129,7 +173,10 @@ class Triangles {
     std::vector<Placed> placed_;
     std::vector<Vec3> polygon_;
     double area_ = 0;
+    std::uint64_t count_ = 0, given_ = 0;  // of all, and so far
+    std::vector<bool> turned_;             // of each; or empty
     std::uint64_t broken_ = 0;
+    bool mirrored_ = false;  // the mesh that is walked over
     bool counted_ = false;
 };
 
@@ -172,6 +219,24 @@ PointCloud sample(const std::filesystem::path& file, Triangles& triangles,
     return out;
 }
 
+// The corners of a mesh that shows nothing but points.
+std::optional<PointCloud> points_of(const std::filesystem::path& file, const aiScene& scene,
+                                    const Triangles& triangles, const MeshColours& colours) {
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        if (scene.mMeshes[m]->mPrimitiveTypes != aiPrimitiveType_POINT) return std::nullopt;
+    CloudFields fields;
+    if (colours.any()) fields.colours = ColourValues::bytes;
+    CloudBuilder cloud(file, 0, fields);
+    triangles.each_vertex([&](const aiVector3t<double>& p, std::uint32_t mesh, std::uint32_t v) {
+        cloud.add(
+            {p.x, p.y, p.z}, {},
+            colours.any() ? colours.at({mesh, {v, v, v}, {1, 0, 0}}) : std::array<double, 3>{});
+    });
+    PointCloud out = cloud.finish();
+    out.notes = colours.notes();
+    return out;
+}
+
 const char* hint_of(MeshFormat format) {
     switch (format) {
         case MeshFormat::obj:
@@ -195,7 +260,19 @@ std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::str
                                      const MeshSampling& sampling) {
     check_mesh(file, bytes, format);
     const std::string surface = format == MeshFormat::obj ? obj_surface(bytes) : std::string();
-    if (format == MeshFormat::obj) bytes = surface;
+    if (format == MeshFormat::obj) {
+        bytes = surface;
+        if (const std::string points = obj_points(surface); !points.empty())
+            return parse_xyz(file, points);
+    }
+    const std::uint64_t file_bytes = bytes.size();
+    const bool gltf = format == MeshFormat::glb || format == MeshFormat::gltf;
+    std::optional<std::string> plain;
+    if (gltf) plain = plain_gltf(file, bytes, format == MeshFormat::glb);
+    if (plain) {
+        bytes = *plain;
+        format = MeshFormat::glb;
+    }
     Assimp::Importer importer;
     importer.SetIOHandler(new FilesBeside(file, format == MeshFormat::gltf));  // is the importer's
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -215,11 +292,19 @@ std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::str
     }
     if (!scene || !scene->mRootNode)
         fail(file, "is no mesh that can be read: " + printable(reason, 200));
-    Triangles triangles(file, *scene, bytes.size());
+    Triangles triangles(file, *scene, file_bytes);
     if (!std::isfinite(triangles.area()))
         fail(file, "its triangles have no finite area; coordinates must be metres");
-    if (!(triangles.area() > 0)) return std::nullopt;
-    return sample(file, triangles, MeshColours(file, *scene, format), unit_m, sampling);
+    const MeshColours colours(file, *scene, format);
+    std::optional<PointCloud> out;
+    if (triangles.area() > 0) {
+        const std::vector<std::string> turned = triangles.turn(unit_m);
+        out = sample(file, triangles, colours, unit_m, sampling);
+        out->notes.insert(out->notes.end(), turned.begin(), turned.end());
+    } else {
+        out = points_of(file, *scene, triangles, colours);
+    }
+    return out;
 }
 
 }  // namespace topple::io

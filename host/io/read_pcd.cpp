@@ -94,8 +94,9 @@ class HeaderParser {
             parse_fields(rest);
         } else if (keyword == "SIZE" || keyword == "COUNT") {
             each_field(keyword, rest, [&](Field& field, std::string_view token) {
-                auto& value = keyword == "SIZE" ? field.size : field.count;
-                return parse_count(token, value) && value > 0;
+                // Some writers give fields of padding, "_", a COUNT of 0.
+                if (keyword == "COUNT") return parse_count(token, field.count);
+                return parse_count(token, field.size) && field.size > 0;
             });
         } else if (keyword == "TYPE") {
             each_field(keyword, rest, [](Field& field, std::string_view token) {
@@ -224,6 +225,7 @@ const Field* find_field(const std::filesystem::path& file, const PcdHeader& head
     for (const auto& field : header.fields) {
         if (field.name != name) continue;
         if (found) fail(file, "there are two FIELDS " + std::string(name));
+        if (field.count == 0) fail(file, "field " + std::string(name) + " has COUNT 0");
         found = &field;
     }
     return found;

@@ -10,13 +10,12 @@
 #include "io/formats.h"
 #include "io/pose_rows.h"
 #include "io/text.h"
+#include "io/text_columns.h"
 
 namespace topple::io {
 namespace {
 
 constexpr std::size_t no_column = SIZE_MAX;
-// Columns beyond this one are not looked at.
-constexpr std::size_t most_columns = 256;
 
 // Which columns hold what.
 struct Columns {
@@ -29,48 +28,57 @@ struct Columns {
     }
 };
 
-std::string_view without_comment(std::string_view line) {
-    line = line.substr(0, line.find('#'));
-    return line.substr(0, line.find("//"));
-}
+// Names of columns as programs and surveyors write them, in German and French, too.
+struct ColumnName {
+    std::string_view name;
+    Columns::Three Columns::*three;
+    std::size_t axis;
+};
+constexpr ColumnName column_names[] = {
+    {"x", &Columns::point, 0},          {"y", &Columns::point, 1},
+    {"z", &Columns::point, 2},          {"easting", &Columns::point, 0},
+    {"northing", &Columns::point, 1},   {"elevation", &Columns::point, 2},
+    {"rechtswert", &Columns::point, 0}, {"hochwert", &Columns::point, 1},
+    {"hoehe", &Columns::point, 2},      {"h\xC3\xB6he", &Columns::point, 2},
+    {"height", &Columns::point, 2},     {"altitude", &Columns::point, 2},
+    {"nx", &Columns::normal, 0},        {"ny", &Columns::normal, 1},
+    {"nz", &Columns::normal, 2},        {"normal_x", &Columns::normal, 0},
+    {"normal_y", &Columns::normal, 1},  {"normal_z", &Columns::normal, 2},
+    {"r", &Columns::colour, 0},         {"g", &Columns::colour, 1},
+    {"b", &Columns::colour, 2},         {"red", &Columns::colour, 0},
+    {"green", &Columns::colour, 1},     {"blue", &Columns::colour, 2},
+    {"rot", &Columns::colour, 0},       {"gr\xC3\xBCn", &Columns::colour, 1},
+    {"gruen", &Columns::colour, 1},     {"blau", &Columns::colour, 2},
+    {"rouge", &Columns::colour, 0},     {"vert", &Columns::colour, 1},
+    {"bleu", &Columns::colour, 2}};
 
-std::size_t split(std::string_view line, std::array<std::string_view, most_columns>& tokens) {
-    std::size_t count = 0;
-    while (count < most_columns) {
-        const auto token = next_token(line, true);
-        if (token.empty()) break;
-        tokens[count++] = token;
-    }
-    return count;
+// A name in small letters without its unit: "X [m]", "x(mm)", "y_m".
+std::string plain_name(std::string_view field) {
+    std::string name = lower_case(field);
+    std::erase_if(name, [](char c) { return c == '"' || c == '\''; });
+    name.resize(std::min(name.find_first_of("[("), name.size()));
+    for (const char* unit : {"_m", "_mm", "_cm", "_in", "_ft"})
+        if (name.ends_with(unit)) name.resize(name.size() - std::string_view(unit).size());
+    return std::string(trimmed(name));
 }
 
 // Reads a line of column names; false where it is none.
-bool parse_names(const std::array<std::string_view, most_columns>& tokens, std::size_t count,
+bool parse_names(const TextColumns& text, const TextColumns::Fields& fields, std::size_t count,
                  Columns& columns) {
     double number;
-    if (count == 0 || parse_number(tokens[0], number)) return false;
-    static constexpr std::array<const char*, 12> names{"x", "y", "z", "nx",  "ny",    "nz",
-                                                       "r", "g", "b", "red", "green", "blue"};
-    std::array<std::size_t, names.size()> at;
-    at.fill(no_column);
+    if (count == 0 || text.number(fields[0], number)) return false;
+    Columns found{.point = Columns::nowhere};
     for (std::size_t i = 0; i < count; ++i) {
-        std::string name;
-        for (const char c : tokens[i]) {
-            if (c != '"' && c != '\'')
-                name += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-        }
-        if (name.empty() || !((name[0] >= 'a' && name[0] <= 'z') || name[0] == '_')) return false;
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            if (name == names[k] && at[k] == no_column) at[k] = i;
+        const std::string name = plain_name(fields[i]);
+        const char first = name.empty() ? '_' : name[0];
+        if (!((first >= 'a' && first <= 'z') || first == '_' || (first & 0x80))) return false;
+        for (const ColumnName& known : column_names) {
+            std::size_t& at = (found.*known.three)[known.axis];
+            if (name == known.name && at == no_column) at = i;
         }
     }
-    if (at[0] == no_column || at[1] == no_column || at[2] == no_column)
-        return true;  // the first three columns
-    columns.point = {at[0], at[1], at[2]};
-    columns.normal = {at[3], at[4], at[5]};
-    columns.colour = {at[6], at[7], at[8]};
-    if (!Columns::found(columns.colour)) columns.colour = {at[9], at[10], at[11]};
-    columns.by_name = true;
+    found.by_name = Columns::found(found.point);
+    if (found.by_name) columns = found;  // else the first three columns
     return true;
 }
 
@@ -95,20 +103,25 @@ bool are_bytes(const std::vector<std::array<double, 3>>& triples) {
 class XyzParser {
   public:
     XyzParser(const std::filesystem::path& file, std::string_view bytes, const CloudSink* sink)
-        : file_(file), sink_(sink), lines_(bytes) {}
+        : file_(file), sink_(sink), lines_(bytes), text_(bytes) {}
 
     PointCloud parse() {
+        if (text_.halves_line() > 0) {
+            fail(file_, "line " + std::to_string(text_.halves_line()) +
+                            ": commas seem to stand between the columns and in the numbers, too: "
+                            "write decimals with points, or semicolons between columns");
+        }
         std::string_view line;
         bool first = true;
         while (lines_.next(line)) {
-            const auto count = split(without_comment(line), tokens_);
+            const auto count = text_.split(line, tokens_);
             if (count == 0) continue;
             if (first) {
                 first = false;
                 if (count == 1 && parse_count(tokens_[0], promised_.emplace())) continue;
                 promised_.reset();
-                if (parse_names(tokens_, count, columns_)) {
-                    names_ = {lines_.number(), std::string(tokens_[0])};
+                if (parse_names(text_, tokens_, count, columns_)) {
+                    names_ = {lines_.number(), count, std::string(tokens_[0])};
                     continue;
                 }
                 if (count == 6) columns_.normal = {3, 4, 5};
@@ -129,12 +142,21 @@ class XyzParser {
                             "x y z in each line");
         }
         hand_over();
-        return cloud_->finish();
+        PointCloud out = cloud_->finish();
+        if (names_.line > 0 && !columns_.by_name)
+            out.notes.push_back("Line " + std::to_string(names_.line) +
+                                " names no columns x, y and z: the first three were taken.");
+        return out;
     }
 
   private:
     void add_row(std::size_t count) {
         ++rows_;
+        // Else a value that is not there shifts all behind it.
+        if (columns_.by_name && !text_.keeps_places() && count != names_.count) {
+            bad(counted(count, "value") + ", but line " + std::to_string(names_.line) + " names " +
+                counted(names_.count, "column"));
+        }
         points_.push_back(triple(columns_.point, count));
         // A row that has not six columns like the first: nothing is known of those beyond three.
         if (!columns_.by_name && count != 6) columns_.normal = columns_.colour = Columns::nowhere;
@@ -145,7 +167,7 @@ class XyzParser {
     void look_for_poses(std::size_t count) {
         std::array<double, PoseRows::most_columns> values{};
         for (std::size_t i = 0; i < std::min(count, values.size()); ++i)
-            if (!parse_number(tokens_[i], values[i])) values[i] = NAN;
+        if (!text_.number(tokens_[i], values[i])) values[i] = NAN;
         pose_rows_.add(values, count);
         if (pose_rows_.full()) refuse_poses();
     }
@@ -161,11 +183,13 @@ class XyzParser {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (which[axis] >= count) {
                 bad(counted(count, "value") + ", but " + std::to_string(which[axis] + 1) +
-                    " are needed");
+                    " are needed" + text_.rule());
             }
-            if (!parse_number(tokens_[which[axis]], values[axis])) {
-                bad(in_quotes(tokens_[which[axis]]) + " is not a number; expected " +
-                    (&which == &columns_.point ? "x y z" : "a normal or a colour") +
+            if (tokens_[which[axis]].empty())
+                bad("column " + std::to_string(which[axis] + 1) + " is empty");
+            if (!text_.number(tokens_[which[axis]], values[axis])) {
+                bad(in_quotes(tokens_[which[axis]]) + " is not a number" + text_.rule() +
+                    "; expected " + (&which == &columns_.point ? "x y z" : "a normal or a colour") +
                     " in columns " + std::to_string(which[0] + 1) + ", " +
                     std::to_string(which[1] + 1) + " and " + std::to_string(which[2] + 1));
             }
@@ -208,14 +232,16 @@ class XyzParser {
     std::uint64_t rows_ = 0;
     PoseRows pose_rows_;
     Lines lines_;
+    TextColumns text_;
     Columns columns_;
     std::optional<std::uint64_t> promised_;
-    // The line that was taken for the columns' names, and its first word.
+    // The line that was taken for the columns' names, how many, and the first.
     struct {
         std::uint64_t line = 0;
+        std::size_t count = 0;
         std::string first;
     } names_;
-    std::array<std::string_view, most_columns> tokens_;
+    TextColumns::Fields tokens_;
     std::vector<std::array<double, 3>> points_, normals_, colours_;
 };
 
@@ -224,10 +250,21 @@ class XyzParser {
 PointCloud parse_xyz(const std::filesystem::path& file, std::string_view bytes,
                      const CloudSink* sink) {
     if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // byte order mark
-    if (bytes.substr(0, 4096).find('\0') != std::string_view::npos) {
-        fail(file,
-             "is not text: it has zero bytes near its start; give text in UTF-8 or ASCII, or a "
-             ".ply or .pcd file");
+    const bool wide = bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
+    const std::string_view begin = bytes.substr(0, 4096);
+    if (wide || begin.find('\0') != std::string_view::npos) {
+        fail(file, std::string(wide ? "is text in UTF-16"
+                                    : "is not text: it has zero bytes near "
+                                      "its start") +
+                       "; give text in UTF-8 or ASCII (iconv -f UTF-16 -t UTF-8 FILE), or a .ply "
+                       "or .pcd file");
+    }
+    // Lines that end with \r alone.
+    std::string lines;
+    if (bytes.find('\n') == std::string_view::npos && begin.find('\r') != std::string_view::npos) {
+        lines = bytes;
+        std::ranges::replace(lines, '\r', '\n');
+        bytes = lines;
     }
     return XyzParser(file, bytes, sink).parse();
 }

@@ -138,6 +138,12 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
             places_must);
     }
     const std::size_t eyes = views.eyes.size();
+    if (options.sides_known && options.known_eyes.empty() && !views.sides_believed) {
+        leave_out_normals(out);
+        out.notes.emplace_back(
+            "By the normals that were given most of the surface would be seen from behind, from "
+            "wherever there is room: they were left out, and the sides of surfaces estimated.");
+    }
     if (posed) {
         out.viewpoints = std::move(sensors.places);
         out.viewpoint_of_point = std::move(sensors.of_point);

@@ -30,6 +30,7 @@
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_size.h"
 #include "pipeline/work_check.h"
+#include "vdb/read_volume.h"
 
 namespace topple {
 namespace {
@@ -88,9 +89,10 @@ struct Looked {
     SurfaceExtent surface;
     PointCloud cloud;
     geometry::FrameHints hints;
-    double voxel_m = 0;         // that the input brings
-    double spacing_m = 0;       // from point to nearest point, or of what the map has for them
-    bool views = false;         // a parse looks at it from virtual views
+    double voxel_m = 0;    // that the input brings
+    double spacing_m = 0;  // from point to nearest point, or of what the map has for them
+    bool views = false;    // a parse looks at it from virtual views
+    ScanOrigin origin = ScanOrigin::cloud_file;
     double seen_m3 = INFINITY;  // of a single view: the space before what it shows
     double fused_bytes = 0;     // of frames: while they are fused
 };
@@ -124,10 +126,15 @@ Looked look_at_cloud(const std::filesystem::path& input, const ParseOptions& opt
     }
     ScannedMap map = read_input(input, options);
     looked.cloud = std::move(map.cloud);
+    looked.hints.format_up = io::up_of_format(input);
     out.points = looked.cloud.size();
     add(looked.cloud, looked);
     const bool map_of_space = io::looks_like_octomap(input);
     if (map_of_space) looked.voxel_m = map.space.voxel_m;
+    if (map_of_space || vdb::looks_like_volume(input))
+        looked.origin = ScanOrigin::map_file;
+    else if (io::is_mesh(input))
+        looked.origin = ScanOrigin::mesh_file;
     DepthFrame frame;
     Intrinsics k;
     const bool depth_image =
@@ -152,6 +159,10 @@ void check_scale(const std::filesystem::path& input, Estimate& out, Looked& look
     CloudView view = looked.cloud;
     view.source = input.string();
     check_spacing(view, std::sqrt(share) * looked.spacing_m);
+    if (!out.tiled)
+        out.unit_hint =
+            unit_hint(view, looked.origin == ScanOrigin::mesh_file ? INFINITY : looked.spacing_m,
+                      looked.origin);
 }
 
 // The voxels and cells of a parse in one piece, as it finds them itself.

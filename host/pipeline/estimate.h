@@ -36,6 +36,7 @@ struct Estimate {
     // where it would refuse, its words for that.
     std::uint64_t least_bytes = 0, allowed_bytes = 0;
     std::string refusal;
+    std::string unit_hint;  // as a note of the parse has it; "" where there is none
     std::uint64_t memory_bytes = 0, work_bytes = 0, output_bytes = 0;
 };
 

@@ -26,8 +26,9 @@ FramedSurfels find_surfels(device::Device& device, const Ingested& input,
     });
     out.frame = stage("frame", [&] {
         if (!input.frame)
-            return geometry::find_scene_frame(device, out.surfels,
-                                              {options.up, input.camera_up, input.sides_guessed});
+            return geometry::find_scene_frame(
+                device, out.surfels,
+                {options.up, input.camera_up, input.sides_guessed, input.format_up});
         geometry::SceneFrame frame = *input.frame;
         if (options.up)
             frame.note = geometry::find_scene_frame(device, out.surfels, {options.up, {}}).note;

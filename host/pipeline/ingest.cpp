@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/depth_noise.h"
+#include "geometry/given_attributes.h"
 #include "geometry/single_scan.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
@@ -197,24 +198,54 @@ void check_count(const CloudView& cloud) {
                                       std::to_string(least_voxels) + "; give a denser scan");
 }
 
+// What of normals and colours contradicts the points around is not used. Colours stay in the
+// output.
+void check_attributes(double around_m, Ingested& out) {
+    const geometry::GivenAttributes given = geometry::look_at_attributes(out.cloud, around_m);
+    const auto percent = [](double share) {
+        return std::to_string(std::lround(100 * share)) + " %";
+    };
+    if (given.normals_contradict()) {
+        out.notes.push_back(
+            "The normals that were given contradict the points: " + percent(given.askew) +
+            " are far off the direction of the surface, and of the others " +
+            percent(given.opposed) +
+            " face another side than those around them. They were left out, and the sides of "
+            "surfaces estimated.");
+        leave_out_normals(out);
+    }
+    if (out.cloud.red.empty() || given.colours_tell()) return;
+    out.notes.emplace_back(
+        given.one_colour ? "All points have one colour, which tells nothing: it was left out."
+                         : "The colours that were given differ between neighbouring points as much "
+                           "as between any others: they were left out.");
+    out.cloud.red = out.cloud.green = out.cloud.blue = {};
+}
+
 // All that follows from the points.
 void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested& out) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
     const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
     check_spacing(cloud, spacing.nearest_m, out.origin);
+    // First, and at once: what is large takes long.
+    const bool mesh = out.origin == ScanOrigin::mesh_file;
+    const std::string hint = unit_hint(cloud, mesh ? INFINITY : spacing.nearest_m, out.origin);
+    if (!hint.empty() && options.notice) options.notice(hint);
     // A little above the spacing, so that a surface has no holes at this resolution.
     constexpr double cell_pitches = 1.25;
     out.cell_m = std::clamp(cell_pitches * spacing.nearest_m, least_cell_m, largest_cell_m);
     out.sparse_cell_m = std::max(out.cell_m, cell_pitches * spacing.surface_m);
     out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
     out.notes = cloud.notes;
+    if (!hint.empty()) out.notes.insert(out.notes.begin(), hint);
     // A depth image's gaps are no news.
     if (cloud.dropped > 0 && cloud.height <= 1)
         out.notes.push_back(io::counted(cloud.dropped, "point") + " of " +
                             std::to_string(cloud.dropped + cloud.size()) +
                             (cloud.dropped == 1 ? " was" : " were") + " not finite and left out.");
     if (cloud.height <= 1) note_spacing(spacing.around_m, out.notes);
+    check_attributes(spacing.around_m, out);
     Intrinsics intrinsics;
     DepthFrame frame;
     if (cloud.height > 1 && geometry::frame_of_organised_cloud(cloud, intrinsics, frame)) {
@@ -243,6 +274,11 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
 
 }  // namespace
 
+void leave_out_normals(Ingested& input) {
+    input.cloud.nx = input.cloud.ny = input.cloud.nz = {};
+    input.own.nx = input.own.ny = input.own.nz = {};
+}
+
 void check_path(const std::filesystem::path& input) {
     if (input.empty())
         throw Error(ErrorKind::usage,
@@ -250,8 +286,10 @@ void check_path(const std::filesystem::path& input) {
                     "frames");
 }
 
-Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options) {
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
+                      ScanOrigin origin) {
     Ingested out;
+    out.origin = origin;
     out.own = std::move(cloud);
     if (out.own.height > 1) {
         out.image_width = out.own.width;
@@ -394,8 +432,11 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     ScannedMap map = read_input(input, options);
     if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
     if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map), options);
-    Ingested out = ingest_cloud(device, std::move(map.cloud), options);
-    if (!io::is_mesh(input)) note_colours(out);
+    const bool mesh = io::is_mesh(input);
+    Ingested out = ingest_cloud(device, std::move(map.cloud), options,
+                                mesh ? ScanOrigin::mesh_file : ScanOrigin::cloud_file);
+    if (!mesh) note_colours(out);
+    out.format_up = io::up_of_format(input);
     return out;
 }
 

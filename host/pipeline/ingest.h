@@ -56,7 +56,8 @@ struct Ingested {
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
     std::optional<Vec3> camera_up;
-    bool sides_guessed = false;  // as FrameHints::sides_guessed
+    bool sides_guessed = false;     // as FrameHints::sides_guessed
+    std::optional<Vec3> format_up;  // as FrameHints::format_up
     // Where it was found already: from all of a building, or as the axes of a map.
     std::optional<geometry::SceneFrame> frame;
     std::vector<geometry::StoreyHint> storeys;  // of a part of a building
@@ -75,6 +76,9 @@ double cell_for_frames(const Intrinsics& intrinsics, double typical_depth_m);
 double typical_depth(const Intrinsics& intrinsics, std::size_t frames,
                      const std::function<DepthFrame(std::size_t)>& load);
 
+// From then on the normals that the cloud brought count as not given.
+void leave_out_normals(Ingested& input);
+
 // What to look at where frames show nothing that makes sense; see scale_checks.h.
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin);
 
@@ -84,7 +88,8 @@ ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& opt
 
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options);
-Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options);
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
+                      ScanOrigin origin = ScanOrigin::cloud_file);
 // The cloud must stay as long as what is returned. Without points that are not finite, no copy of
 // it is made.
 Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options);

@@ -10,6 +10,7 @@
 #include "core/vectors.h"
 #include "io/text.h"
 #include "pipeline/ingest.h"
+#include "pipeline/surface_extent.h"
 #include "topple/error.h"
 
 namespace topple {
@@ -28,19 +29,20 @@ std::string text_of(double value) {
 
 // "if the coordinates are in mm, multiply them by 0.001 (0.94 m), in cm by 0.01 (9.4 m)": the units
 // in which points that extend so far would be those of a table or a room; "" where there is none.
-std::string other_units(double extent_m, bool from_file) {
+std::string other_units(double extent_m, bool from_file, double least_m = least_table_m) {
     std::string out;
-    for (const auto& [unit, unit_m] : {std::pair("mm", 0.001), {"cm", 0.01}, {"in", 0.0254}}) {
+    for (const auto& [unit, unit_m] :
+         {std::pair("mm", 0.001), {"cm", 0.01}, {"inches", 0.0254}, {"feet", 0.3048}}) {
         const double then_m = extent_m * unit_m;
-        if (then_m < least_table_m || then_m > largest_room_m) continue;
+        if (then_m < least_m || then_m > largest_room_m) continue;
         const bool first = out.empty();
         out += first ? "if the coordinates are in " : ", in ";
-        out += std::string_view(unit) == "in" ? "inches" : unit;
+        out += unit;
         if (from_file)
             (out += first ? ", say ParseOptions::unit_m = " : " ParseOptions::unit_m = ") +=
-                text_of(unit_m);
+                io::short_number(unit_m);
         else
-            (out += first ? ", multiply them by " : " by ") += text_of(unit_m);
+            (out += first ? ", multiply them by " : " by ") += io::short_number(unit_m);
         out += " (" + io::two_digits(then_m) + " m)";
     }
     return out;
@@ -99,6 +101,26 @@ std::string large_extent_hint(double extent_m, ScanOrigin origin) {
     if (extent_m <= largest_room_m || of_frames(origin)) return {};
     const std::string units = other_units(extent_m, !in_memory(origin));
     return units.empty() ? units : "it all extends over " + text_of(extent_m) + " m: " + units;
+}
+
+std::string unit_hint(const CloudView& cloud, double spacing_m, ScanOrigin origin) {
+    // What rooms and halls are thinner than, which is their height mostly; and points that nobody
+    // sets out for a scan so large.
+    constexpr double high_m = 5, wide_m = 0.02, least_part_m = 0.005;
+    if (origin == ScanOrigin::map_file || of_frames(origin) || spacing_m <= wide_m) return {};
+    const Bounds<float> bounds = bounds_of(cloud);
+    double longest = 0, thinnest = INFINITY;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double edge = double{bounds.high[a]} - bounds.low[a];
+        longest = std::max(longest, edge);
+        thinnest = std::min(thinnest, edge);
+    }
+    if (longest <= largest_room_m && thinnest <= high_m) return {};
+    const std::string units = other_units(longest, !in_memory(origin), least_part_m);
+    return units.empty()
+               ? units
+               : "It all extends over " + text_of(longest) + " m, and " + text_of(thinnest) +
+                     " m at its thinnest, more than rooms do: " + units + ".";
 }
 
 std::string small_extent_hint(double extent_m, ScanOrigin origin) {

@@ -16,7 +16,14 @@
 namespace topple {
 
 // Where a scan came from, and so what of it, and which option, would mend it.
-enum class ScanOrigin { cloud_file, map_file, frames_folder, cloud_in_memory, frames_in_memory };
+enum class ScanOrigin {
+    cloud_file,
+    mesh_file,
+    map_file,
+    frames_folder,
+    cloud_in_memory,
+    frames_in_memory
+};
 inline bool in_memory(ScanOrigin origin) {
     return origin == ScanOrigin::cloud_in_memory || origin == ScanOrigin::frames_in_memory;
 }
@@ -41,6 +48,10 @@ void check_viewpoint_distance(const CloudView& cloud);
 // 115 m: if the coordinates are in cm, multiply them by 0.01 (1.1 m)", or how else an input from
 // there is mended; else "".
 std::string large_extent_hint(double extent_m, ScanOrigin origin);
+// Of a cloud that is larger than rooms, or as high as none, and whose points are `spacing_m` apart,
+// farther than such a scan's: the units in which it were one, as a note; else "". Those of a mesh
+// are as far apart as they were made: INFINITY.
+std::string unit_hint(const CloudView& cloud, double spacing_m, ScanOrigin origin);
 // Of what extends over less than things in a room do: "it all extends over X m: check
 // ParseOptions::unit_m", or what else gives the unit of such an input; else "".
 std::string small_extent_hint(double extent_m, ScanOrigin origin);

@@ -199,7 +199,9 @@ tiles::Layout find_layout(const SharedWork& shared, const tiles::SpilledPoints& 
     });
 }
 
-void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, Scene& scene) {
+void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout,
+               const std::string& unit_note, Scene& scene) {
+    if (!unit_note.empty()) scene.notes.push_back(unit_note);
     if (!layout.frame.note.empty()) scene.notes.push_back(layout.frame.note);
     PointCloud moved;
     moved.offset_m = scene.offset_m = points.offset_m();
@@ -252,7 +254,7 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
     Scene& scene = result.scene;
     scene.source = input.string();
     record_run(device, options, layout.voxel_m, scene);
-    add_notes(points, layout, scene);
+    add_notes(points, layout, io::unit_note_of(input, options.unit_m), scene);
     const auto tiled = std::make_shared<TiledResult>(std::move(work), input, options.unit_m, bins,
                                                      layout, std::move(joined.number));
     parts.points = tiled->count_points(parts.model.size());

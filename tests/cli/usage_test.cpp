@@ -26,7 +26,7 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
     expect_failure(2, {"parse", "plane.xyz", "--densty=3"}, {"--densty;", "--density?"});
     expect_failure(2, {"--verison"}, {"--verison", "--version?"});
     expect_failure(2, {"parse", "plane.xyz", "--unit", "feet"},
-                   {"--unit feet: expected m, cm, mm or in"});
+                   {"--unit feet: expected m, cm, mm, in or ft"});
     expect_failure(2, {"generate", "room", "--kind", "office", "--scan", "glass"},
                    {"--scan glass: expected walk, sparse, cloud, laser or single"});
     expect_failure(2, {"parse", "plane.xyz", "--disturbance", "people"},

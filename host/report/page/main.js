@@ -17,7 +17,7 @@ function fillHeader(scene) {
   }
   const up = {
     given: 'given by the user', manhattan: 'from the room\u2019s three main directions',
-    'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed', map: 'the map\'s z',
+    'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed', map: 'the map\'s z', format: 'by the file\'s format',
   };
   const facts = [
     ['scan', scene.source],

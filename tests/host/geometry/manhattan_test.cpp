@@ -143,6 +143,29 @@ TEST_F(Manhattan, AnUpThatNothingContradictsIsNot) {
     }
 }
 
+TEST_F(Manhattan, AFormatsUpHoldsWhereTheScanDoesNotContradictIt) {
+    const Eigen::Matrix3d y_up = tilt(-90, {1, 0, 0}), tilted = tilt(5, {1, 0, 1}) * y_up;
+    FrameHints hints;
+    hints.format_up = Vec3{0, 1, 0};
+    for (const Eigen::Matrix3d& turn : {y_up, tilted}) {
+        for (const bool walls : {true, false}) {
+            const SceneFrame frame = find_scene_frame(*device, surfels(turn, walls), hints);
+            EXPECT_EQ(frame.up_method, "format");
+            EXPECT_EQ(frame.note, "");
+            EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5);
+        }
+    }
+    // Written with z up all the same.
+    const SceneFrame other =
+        find_scene_frame(*device, surfels(Eigen::Matrix3d::Identity(), true), hints);
+    EXPECT_LT(degrees_off(other.axes[2], {0, 0, 1}), 0.5);
+    EXPECT_NE(other.note.find("(0, 1, 0) up, but its surfaces show (0, 0, 1)"), std::string::npos)
+        << other.note;
+    const SceneFrame none =
+        find_scene_frame(*device, make_surfels(*device, {}, 0.02, {}, {}), hints);
+    EXPECT_EQ(none.axes[2], (Vec3{0, 1, 0}));
+}
+
 TEST_F(Manhattan, ATablePlaneAloneGivesUp) {
     // The camera's frame: y down, pitched down by 50 degrees.
     const Eigen::Matrix3d turn = tilt(50, {1, 0, 0}) * tilt(90, {1, 0, 0});

@@ -44,6 +44,13 @@ TEST_F(Pcd, ascii_with_normals_vectors_and_padding) {
     head.size = "4 4 4 4 1 4 8 4 4";
     head.type = "U F F F U F F F F";
     head.count = "1 1 1 1 2 1 1 3 1";
+    Head padded = head;
+    padded.fields = "_ " + head.fields + " _";
+    padded.size = "1 " + head.size + " 1";
+    padded.type = "U " + head.type + " U";
+    padded.count = "0 " + head.count + " 0";
+    const std::string points = "0 0 0 2 9 9 1 2 7 7 7 3\n0 0 -3 0 9 9 4 5 7 7 7 6\n";
+    EXPECT_EQ(read_cloud(write("a.pcd", padded.text() + points)).z, (std::vector<float>{3, 6}));
     const auto cloud =
         read_cloud(write("a.pcd", head.text() + "4294967295 0 0 2 9 9 1 2 7 7 7 3\n\n# between\n"
                                                 "0 0 -3 0 9 9 4 5 7 7 7 6\n"));
@@ -201,7 +208,7 @@ TEST_F(Pcd, bad_files_are_refused_with_their_reason) {
          with([](Head& h) { h.size = "4 4 3"; }, "1 2 3\n1 2 3\n"),
          {"field z", "SIZE 3"}},
         {"odd type", with([](Head& h) { h.type = "F F Q"; }, ""), {"line 5", "\"Q\""}},
-        {"count 0", with([](Head& h) { h.count = "1 1 0"; }, ""), {"line 6", "\"0\""}},
+        {"count 0", with([](Head& h) { h.count = "1 1 0"; }, two_points), {"field z has COUNT 0"}},
         {"absurd count",
          with([](Head& h) { h.count = "1 1 18446744073709551615"; }, two_points),
          {"COUNT 18446744073709551615"}},

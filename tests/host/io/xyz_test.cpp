@@ -35,6 +35,63 @@ TEST_F(Xyz, separators_comments_and_extra_columns) {
     }
 }
 
+// Two points, (1.5, -2.25, 1234) and (0.25, 2, 3), as programs of many countries write them.
+TEST_F(Xyz, commas_are_decimals_where_something_else_separates) {
+    for (const char* text : {
+             "1,5;-2,25;1234,0\n0,25;2;3\n",
+             "1,5 -2,25 1234\n0,25 2,0 3,0\n",
+             "1,5\t-2,25\t1234,0\r\n,25\t2,\t3,0\r\n",
+             "1,5, -2,25, 1234,0\n0,25, 2,0, 3,0\n",
+             "1,5E+00;-22,5e-1;1,234E+03\n2,5E-01;2,0;3,0\n",
+             "1,5;-2,25;1.234,0;\n0,25;2,0;3,0;\n",
+             "1.5;-2.25;1,234.0\n0.25;2;3\n",
+             "\"1,5\",\"-2,25\",\"1234,0\"\n\"0,25\",\"2\",\"3\"\n",
+             "\"1.5\",\"-2.25\",\"1,234\"\n\"0.25\",\"2\",\"3,000.0e-3\"\n",
+             "2\n1,5 -2,25 1234,0\n0,25 2,0 3,0\n",
+             "\xEF\xBB\xBFx;y;z\n1,5;-2,25;1234,0\n0,25;2,0;3,0\n",
+             "x,y,z\n1,5 -2,25 1234,0\n0,25 2,0 3,0\n",
+             "x y z\n1,5;-2,25;1234,0\n0,25;2,0;3,0\n",
+             "Name;Rechtswert [m];Hochwert [m];H\xC3\xB6he [m]\nTisch, "
+             "rund;1,5;-2,25;1234,0\nb;0,25;2;3\n",
+             "blau;rot;gr\xC3\xBCn;z;y;x\n1;2;3;1234,0;-2,25;1,5\n1;2;3;3,0;2,0;0,25\n",
+             "id,x,y,z\n,1.5,-2.25,1234\n2,0.25,2,3\n",
+         }) {
+        SCOPED_TRACE(text);
+        const auto cloud = read_cloud(write("a.csv", text));
+        EXPECT_EQ(cloud.x, (std::vector<float>{1.5f, 0.25f}));
+        EXPECT_EQ(cloud.y, (std::vector<float>{-2.25f, 2}));
+        EXPECT_EQ(cloud.z, (std::vector<float>{1234, 3}));
+    }
+    EXPECT_EQ(read_cloud(write("a.csv", "1;2;3;255;0;1\n4;5;6;7;8;9\n")).red.size(), 2u);
+    EXPECT_EQ(read_cloud(write("a.xyz", "1,2,3\r4,5,6\r")).size(), 2u);
+}
+
+TEST_F(Xyz, what_commas_mean_is_decided_once) {
+    const struct {
+        const char* text;
+        std::initializer_list<std::string_view> message;
+    } cases[] = {
+        {"1,5;2,5;3,5\n1.5;2,5;3,5\n", {"line 2", "\"1.5\"", "commas are decimals'"}},
+        {"1,5;2,5;3,5\n1.234;2,5;3,5\n", {"line 2", "\"1.234\""}},
+        {"1,234.5;2;3\n1,5;2;3\n", {"line 2", "\"1,5\"", "thousands'"}},
+        {"1 234,56;2,5;3,5\n", {"line 1", "\"1 234,56\""}},
+        {"1,5,2,05,3,25\n-0,5,2,75,3,5\n", {"line 1", "commas", "semicolons"}},
+        {"1,5;2,5\n", {"line 1", "2 values", "3 are needed"}},
+        {"1,2,3\n1,,3\n", {"line 2", "column 2 is empty"}},
+        {"x;y;z\n1;;3\n", {"line 2", "column 2 is empty"}},
+        {"x y z i\n1 2 3\n", {"line 2", "3 values", "line 1 names 4 columns"}},
+        {"1.5\r2\r3", {"line 1", "1 value"}},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.text);
+        expect_input_error([&] { read_cloud(write("a.csv", c.text)); }, c.message);
+    }
+    std::string late;
+    for (int n = 0; n < 300; ++n) late += "1 2 3\n";
+    expect_input_error([&] { read_cloud(write("a.xyz", late + "1,5 2 3\n")); },
+                       {"line 301", "\"1,5\""});
+}
+
 TEST_F(Xyz, poses_are_no_points) {
     const std::string tum = "# t x y z qx qy qz qw\n1.0 0 0 1 0.5 -0.5 0.5 -0.5\n",
                       open3d = "0 0 1\n1 0 0 2\n0 0 -1 0\n0 1 0 1\n0 0 0 1\n";
@@ -97,7 +154,7 @@ TEST_F(Xyz, bad_files_are_refused_with_their_reason) {
          std::string("\xff\xfe"
                      "1\0 \0",
                      6),
-         {"zero bytes"}},
+         {"text in UTF-16", "iconv"}},
         {"terminal controls", "1 2 \x1b[2J\n", {"\\x1b[2J"}},
         {"a long line", "1 2 " + std::string(100000, 'q') + "\n", {"line 1", "..."}},
         {"only comments", "# nothing\n\n", {"no points"}},
