@@ -33,7 +33,7 @@ constexpr double least_upright_share = 0.3;
 constexpr double extent_weight = -1.75, level_weight = 1.9, clutter_weight = 1.4,
                  lone_end_weight = 1.1, turned_weight = 2.3, turned_floor = 0.02;
 // Odds of the input's z, give or take a tilt, and of its y, either way, against any direction.
-constexpr double tilt_degrees = 10, odds_of_z = 100, odds_of_y = 5;
+constexpr double tilt_degrees = 10, odds_of_z = 50, odds_of_y = 5;
 // Farther from z than this, up is told to the user.
 constexpr double customary_degrees = 25;
 // Sides that were guessed are never surer than this; less sure, they don't tell up from down.
