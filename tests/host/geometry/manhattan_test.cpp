@@ -317,7 +317,10 @@ TEST_F(Manhattan, ARoofMakesNoFloorOfAWall) {
             const SceneFrame frame =
                 find_scene_frame(*device, s, {.up = {}, .camera_up = {}, .sides_guessed = guessed});
             EXPECT_LT(degrees_off(frame.axes[2], {0, 0, 1}), 0.5) << degrees;
-            EXPECT_EQ(frame.note, "") << degrees;
+            // A steeper one may be a wall of a room that lies on its side.
+            if (degrees < 50) {
+                EXPECT_EQ(frame.note, "") << degrees;
+            }
         }
         EXPECT_EQ(find_scene_frame(*device, s, {.up = Vec3{0, 0, 1}, .camera_up = {}}).note, "");
     }
