@@ -2,6 +2,7 @@
 #include "io/file_writer.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -32,8 +33,14 @@ FileWriter::FileWriter(const std::filesystem::path& file) : file_(file) {
     buffer_.reserve(buffer_bytes);  // first: what throws from here on would leave the file open
     const int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
     descriptor_ = ::open(file.c_str(), flags, 0666);
-    if (descriptor_ < 0 && errno == EEXIST && ::unlink(file.c_str()) == 0)
-        descriptor_ = ::open(file.c_str(), flags, 0666);
+    if (descriptor_ < 0 && errno == EEXIST) {
+        struct stat status {};
+        // A device or a pipe is nobody's to remove.
+        if (::lstat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode) &&
+            !S_ISLNK(status.st_mode))
+            fail(file, "can't be written: it is no regular file");
+        if (::unlink(file.c_str()) == 0) descriptor_ = ::open(file.c_str(), flags, 0666);
+    }
     if (descriptor_ < 0) can_not_write(file_, errno);
 }
 
