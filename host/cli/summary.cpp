@@ -253,6 +253,7 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
           io::counted(scene.objects.size(), "object").c_str(), grounded,
           io::counted(scene.supports.size(), "support").c_str(), seconds, scene.backend.c_str(),
           scene.device.c_str());
+    for (const std::string& note : scene.notes) print("Note: %s\n", note.c_str());
     print_objects(scene);
     if (!scene.corrections.empty()) {
         const std::vector<std::size_t> said = told_sentences(scene.corrections);
@@ -263,7 +264,6 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
               io::counted(held.size(), "correction").c_str());
     }
     if (before) print_change(*before, scene);
-    for (const std::string& note : scene.notes) print("Note: %s\n", note.c_str());
     print("\nReport: %s\n", (out / "report.html").c_str());
 }
 

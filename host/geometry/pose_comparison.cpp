@@ -1,52 +1,62 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/pose_comparison.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
-#include <optional>
-
-#include "core/depth_noise.h"
 
 namespace topple::geometry {
 namespace {
 
+using Eigen::Isometry3d;
 using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
-// What is kept of a frame, and how many of its readings in a row are carried.
-constexpr std::uint32_t kept_columns = 160, carried_columns = 40;
+constexpr std::size_t most_kept = 1000;
+
+// Frames may look at the same place where so many readings of one, coarsely, fall on surfaces of
+// the other; and do where so many meet these, or are seen through.
+constexpr double least_overlap = 0.3, least_visible = 0.05;
+constexpr unsigned overlap_stride = 16;
+// Frames back in time that are looked through for each frame, and those that are taken; and how far
+// back the last is.
+constexpr std::size_t most_looked_through = 48, most_taken = 3, most_steps_back = 8;
+
+// A pair contradicts where so many readings are seen through, of all and of those that are not
+// hidden, and either a motion makes this much more of them agree and leaves few seen through; or
+// none was found, and those are most: then it is more than what moves in a room, which hides a part
+// of one frame from the other.
+constexpr double least_before = 0.07, least_seen_through = 0.12, least_gain = 0.3;
+constexpr double most_left = 0.1, most_of_moved = 0.5;
+// A motion by less is as a step of what moves there, which other readings bear, and does no harm.
+constexpr double least_way_m = 0.03, least_turn_rad = 0.026;
+// Half of the former of a motion shows drift where it does so in several pairs, and in this share
+// of all.
+constexpr double least_drifting = 0.05;
+constexpr std::size_t least_drifting_pairs = 3;
+// Contradictions without such a motion are told where they are this share of all pairs: thin things
+// at another scale are seen through, too.
+constexpr double least_unexplained = 0.04;
+// With so few seen through, a frame fits.
+constexpr double most_of_fitting = 0.05;
+
 // Frames to which others are looked for, spread over the sequence.
 constexpr std::size_t anchors = 8;
 // Frames of a pair turn by this share of the smaller field of view at least, and twice that at
 // most: conventions then differ by more than noise, and two thirds of what is seen is common.
 constexpr double turn_share = 0.3;
 // Another convention is better if so many of the readings that it compares agree, and so many of
-// all, and in the given one less than these shares of that. On 11 scans in the right convention 82
-// to 98 % agree, or 35 to 74 % of all; in any other at most 38 % of these shares, or 22 % of all.
+// all, and in the given one less than these shares of that.
 constexpr double least_agreeing = 0.5, least_common = 0.1;
 constexpr double most_given_agreeing = 0.5, most_given_common = 1.0 / 3;
-// Frames contradict each other if fewer agree, and more lie before what the other frame sees, of at
-// least so many that are compared. On scans of 17 rooms with right poses and intrinsics, each with
-// all its frames and with every third to twelfth, fewer agree where little is common, and then
-// none lies before; with poses in another order or of another scale, or another focal length or
-// principal point, mostly 30 to 50 % do.
-constexpr double most_before = 0.1, least_compared = 0.05;
-constexpr std::size_t least_compared_pairs = 3;
-// Frames of one pose moved if fewer agree. On five scans and three generated rooms, with one pose
-// for all frames or for 20 in a row, 1 to 44 % do; of a camera that stands still at least 94 %,
-// with up to three times the noise of core/depth_noise.h.
-constexpr double most_of_moved = 0.5;
 // Those that are nearly as good as the best are not told apart from it.
 constexpr double as_good = 0.75;
 
-Eigen::Isometry3d isometry(const Mat4& pose) {
-    return Eigen::Isometry3d(Eigen::Map<const Matrix>(pose.data()).eval());
+Isometry3d isometry(const Mat4& pose) {
+    return Isometry3d(Eigen::Map<const Matrix>(pose.data()).eval());
 }
 
-Mat4 pose_of(const Eigen::Isometry3d& isometry) {
+Mat4 pose_of(const Isometry3d& isometry) {
     Mat4 out;
     Eigen::Map<Matrix>(out.data()) = isometry.matrix();
     return out;
@@ -54,8 +64,8 @@ Mat4 pose_of(const Eigen::Isometry3d& isometry) {
 
 // What turns poses of a camera with other axes into those of one with topple's: the directions of
 // these, x right, y down and z ahead, as columns.
-Eigen::Isometry3d axes_of(PoseConvention convention) {
-    Eigen::Isometry3d axes = Eigen::Isometry3d::Identity();
+Isometry3d axes_of(PoseConvention convention) {
+    Isometry3d axes = Isometry3d::Identity();
     switch (convention) {
         case PoseConvention::opengl:
         case PoseConvention::world_to_camera_opengl:
@@ -71,7 +81,7 @@ Eigen::Isometry3d axes_of(PoseConvention convention) {
     return axes;
 }
 
-Eigen::Isometry3d meant(const Eigen::Isometry3d& given, PoseConvention convention) {
+Isometry3d meant(const Isometry3d& given, PoseConvention convention) {
     switch (convention) {
         case PoseConvention::world_to_camera:
         case PoseConvention::world_to_camera_opengl:
@@ -79,12 +89,12 @@ Eigen::Isometry3d meant(const Eigen::Isometry3d& given, PoseConvention conventio
             return given.inverse() * axes_of(convention);
         case PoseConvention::w_first: {
             const Eigen::Quaterniond q(given.linear());
-            Eigen::Isometry3d out = given;
+            Isometry3d out = given;
             out.linear() = Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix();
             return out;
         }
         case PoseConvention::transposed: {
-            Eigen::Isometry3d out = given;
+            Isometry3d out = given;
             out.linear() = given.linear().transpose();
             return out;
         }
@@ -93,17 +103,36 @@ Eigen::Isometry3d meant(const Eigen::Isometry3d& given, PoseConvention conventio
     }
 }
 
-double turn_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+double turn_between(const Isometry3d& a, const Isometry3d& b) {
     const double trace = (a.linear().transpose() * b.linear()).trace();
     return std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0));
 }
 
-double field_of_view(const Intrinsics& k) {
-    return 2 * std::atan(std::min(k.width / k.fx, k.height / k.fy) / 2);
+std::vector<PoseConvention> better_than_given(
+    const std::array<Agreement, pose_conventions>& found) {
+    const auto common = [&](std::size_t n) { return found[n].common_share(); };
+    std::vector<std::size_t> order;
+    for (std::size_t n = 0; n < pose_conventions; ++n) order.push_back(n);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return common(a) > common(b); });
+    const Agreement &best = found[order[0]], &given = found[0];
+    if (best.agreeing_share() < least_agreeing || best.common_share() < least_common ||
+        given.agreeing_share() > most_given_agreeing * best.agreeing_share() ||
+        given.common_share() > most_given_common * best.common_share())
+        return {};
+    std::vector<PoseConvention> out;
+    for (const std::size_t n : order)
+        if (common(n) >= as_good * best.common_share())
+            out.push_back(static_cast<PoseConvention>(n));
+    return out;
 }
 
-double share_of(std::uint64_t part, std::uint64_t of) {
-    return of == 0 ? 0 : static_cast<double>(part) / static_cast<double>(of);
+// What so many of them stay below.
+double upper_quartile(std::vector<double> values) {
+    if (values.empty()) return 0;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(3 * values.size() / 4);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
 }
 
 }  // namespace
@@ -112,42 +141,156 @@ Mat4 pose_meant(const Mat4& given, PoseConvention convention) {
     return pose_of(meant(isometry(given), convention));
 }
 
-double PoseComparison::Agreement::agreeing_share() const {
-    return share_of(agreeing, compared);
-}
-
-double PoseComparison::Agreement::before_share() const {
-    return share_of(before, compared);
-}
-
-double PoseComparison::Agreement::common_share() const {
-    return share_of(agreeing, carried);
-}
-
-PoseComparison::PoseComparison(const Intrinsics& intrinsics, std::span<const Mat4> poses,
+PoseComparison::PoseComparison(const Intrinsics& k, std::span<const Mat4> poses,
                                double typical_depth_m)
-    : intrinsics_(intrinsics),
-      step_(std::max(1U, std::max(intrinsics.width, intrinsics.height) / kept_columns)),
-      width_((intrinsics.width - 1) / step_ + 1),
-      height_((intrinsics.height - 1) / step_ + 1),
-      poses_(poses.begin(), poses.end()) {
-    choose_pairs(typical_depth_m);
-    choose_same_poses();
-    std::vector<std::size_t> numbers = same_;
-    for (const Pair& pair : pairs_) numbers.insert(numbers.end(), {pair.a, pair.b});
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-    for (const std::size_t number : numbers) kept_.push_back({number, {}});
+    : field_of_view_(2 * std::atan(std::min(k.width / k.fx, k.height / k.fy) / 2)),
+      typical_depth_m_(typical_depth_m),
+      every_((poses.size() + most_kept - 1) / most_kept),
+      frames_(k, every_ == 0 ? 0 : (poses.size() + every_ - 1) / every_) {
+    for (std::size_t n = 0; n < poses.size(); n += every_) poses_.push_back(isometry(poses[n]));
 }
 
-void PoseComparison::choose_pairs(double typical_depth_m) {
-    const double least = turn_share * field_of_view(intrinsics_);
-    // How far apart frames are depends on what their poses mean, but for the camera's axes.
+void PoseComparison::add(const DepthFrame& frame, std::size_t number) {
+    if (!poses_.empty() && number % every_ == 0) frames_.add(frame, number / every_);
+}
+
+bool PoseComparison::look_at_one_place(std::size_t a, std::size_t b) const {
+    return frames_.carry(a, b, poses_[b].inverse() * poses_[a], overlap_stride).compared_share() >=
+           least_overlap;
+}
+
+// Each with the last and the earliest ones before it that look at the same place.
+std::vector<PoseComparison::Pair> PoseComparison::pairs_in_time() const {
+    std::vector<Pair> pairs;
+    const std::size_t count = frames_.size();
+    const std::size_t step = std::max<std::size_t>(1, count / most_looked_through);
+    const std::size_t apart = std::max<std::size_t>(2, count / (4 * most_taken));
+    for (std::size_t b = 1; b < count; ++b) {
+        if (!frames_.has(b)) continue;
+        std::size_t last = b;
+        for (std::size_t a = b; last == b && a-- > b - std::min(b, most_steps_back);)
+            if (frames_.has(a) && look_at_one_place(a, b)) last = a;
+        std::size_t taken = 0;
+        for (std::size_t a = 0; a < last && taken < most_taken; a += step) {
+            if (!frames_.has(a) || (taken > 0 && a < pairs.back().a + apart)) continue;
+            if (!look_at_one_place(a, b)) continue;
+            pairs.push_back({a, b});
+            ++taken;
+        }
+        if (last < b) pairs.push_back({last, b});
+    }
+    return pairs;
+}
+
+struct PoseComparison::Compared {
+    bool common = false, contradicts = false, drifts = false, fits = false;
+    bool aligned = false;  // by this:
+    double way_m = 0, turn_rad = 0;
+};
+
+PoseComparison::Compared PoseComparison::compare(const Pair& pair) const {
+    const Isometry3d given = poses_[pair.b].inverse() * poses_[pair.a];
+    const Agreement found = frames_.compare(pair.a, pair.b, given);
+    Compared out;
+    out.common = found.common_share() + found.before_share() >= least_visible;
+    out.fits = out.common && found.seen_through_share() < most_of_fitting;
+    const auto seen_through = [&](double share) {
+        return found.before_share() >= share * least_before &&
+               found.seen_through_share() >= share * least_seen_through;
+    };
+    if (!seen_through(0.5)) return out;
+    const Isometry3d moved = frames_.align(pair.a, pair.b, given);
+    const Agreement mended = frames_.compare(pair.a, pair.b, moved);
+    const double gain = mended.agreeing_share() - found.agreeing_share();
+    out.way_m = (moved.inverse().translation() - given.inverse().translation()).norm();
+    out.turn_rad = turn_between(given, moved);
+    out.drifts = mended.seen_through_share() < most_left && gain >= 0.5 * least_gain &&
+                 (out.way_m >= least_way_m || out.turn_rad >= least_turn_rad);
+    out.contradicts = seen_through(1) && ((out.drifts && gain >= least_gain) ||
+                                          found.seen_through_share() >= most_of_moved);
+    out.aligned = out.drifts;
+    return out;
+}
+
+std::optional<PoseContradiction> PoseComparison::find_contradiction() const {
+    ComparedPairs compared;
+    PoseContradiction out;
+    std::size_t aligned = 0, drifting = 0;
+    for (const Pair& pair : pairs_in_time()) {
+        compared.emplace_back(pair, compare(pair));
+        const Compared& found = compared.back().second;
+        out.pairs += found.common;
+        out.contradict += found.contradicts;
+        aligned += found.contradicts && found.aligned;
+        drifting += found.drifts;
+    }
+    const auto share_of_pairs = [&](std::size_t count) {
+        return static_cast<double>(count) /
+               static_cast<double>(std::max<std::size_t>(1, out.pairs));
+    };
+    if (aligned == 0 && share_of_pairs(out.contradict) < least_unexplained) out.contradict = 0;
+    const bool drifts = out.contradict == 0 && drifting >= least_drifting_pairs &&
+                        share_of_pairs(drifting) >= least_drifting;
+    if (out.contradict == 0 && !drifts) return std::nullopt;
+    if (drifts) out.contradict = drifting;
+    out.from = out.until = frames_.size();
+    std::vector<double> ways, turns;
+    for (const auto& [pair, found] : compared) {
+        if (!(drifts ? found.drifts : found.contradicts)) continue;
+        if (pair.b < out.from) {
+            out.from = pair.b;
+            out.against = pair.a;
+        }
+        if (!found.aligned) continue;
+        ways.push_back(found.way_m);
+        turns.push_back(found.turn_rad);
+    }
+    find_first(drifts, out);
+    out.until = fits_again(out.from, compared);
+    out.same_pose = poses_[out.from].matrix() == poses_[out.from - 1].matrix();
+    out.way_m = upper_quartile(std::move(ways));
+    out.turn_deg = upper_quartile(std::move(turns)) * 180 / std::numbers::pi;
+    for (std::size_t* number : {&out.from, &out.until, &out.against}) *number *= every_;
+    return out;
+}
+
+// Few pairs may have told: all frames shortly before are compared with all that came earlier.
+void PoseComparison::find_first(bool drifts, PoseContradiction& out) const {
+    constexpr std::size_t looked_back = 16;
+    for (std::size_t b = out.from - std::min(out.from - 1, looked_back); b < out.from; ++b) {
+        for (std::size_t a = b; a-- > 0;) {
+            if (!frames_.has(a) || !frames_.has(b) || !look_at_one_place(a, b)) continue;
+            const Compared found = compare({a, b});
+            if (!(drifts ? found.drifts : found.contradicts)) continue;
+            out.from = b;
+            out.against = a;
+            return;
+        }
+    }
+}
+
+// The first frame from which on those that are compared with frames before `from` fit these.
+std::size_t PoseComparison::fits_again(std::size_t from, const ComparedPairs& compared) const {
+    std::size_t until = frames_.size();
+    std::size_t last = from;  // that contradicts
+    for (const auto& [pair, found] : compared)
+        if (found.contradicts && pair.a < from) last = std::max(last, pair.b);
+    for (const auto& [pair, found] : compared)
+        if (found.fits && pair.a < from && pair.b > last) until = std::min(until, pair.b);
+    return until;
+}
+
+// By how much two frames turn is the same in all conventions but `w_first`; how far apart they are
+// depends on what their poses mean, but for the camera's axes. Nearest are those among which
+// conventions show best; among frames that do not turn, those that move as far.
+std::vector<PoseComparison::Pair> PoseComparison::turned_pairs() const {
+    const double least = turn_share * field_of_view_;
+    std::vector<Pair> pairs;
     for (const PoseConvention convention :
          {PoseConvention::camera_to_world, PoseConvention::world_to_camera,
           PoseConvention::w_first}) {
-        std::vector<Eigen::Isometry3d> cameras;
-        for (const Mat4& pose : poses_) cameras.push_back(meant(isometry(pose), convention));
+        std::vector<Isometry3d> cameras;
+        for (const Isometry3d& pose : poses_) cameras.push_back(meant(pose, convention));
         const std::size_t count = std::min(anchors, cameras.size());
         for (std::size_t n = 0; n < count; ++n) {
             const std::size_t a = count == 1 ? 0 : n * (cameras.size() - 1) / (count - 1);
@@ -160,148 +303,36 @@ void PoseComparison::choose_pairs(double typical_depth_m) {
                 if (angle >= least && angle <= 2 * least && way < nearest_turned) {
                     nearest_turned = way;
                     best_turned = b;
-                } else if (angle < least && way >= least * typical_depth_m &&
-                           way <= 2 * least * typical_depth_m && way < nearest_moved) {
+                } else if (angle < least && way >= least * typical_depth_m_ &&
+                           way <= 2 * least * typical_depth_m_ && way < nearest_moved) {
                     nearest_moved = way;
                     best_moved = b;
                 }
             }
             if (const auto b = best_turned ? best_turned : best_moved)
-                pairs_.push_back({std::min(a, *b), std::max(a, *b)});
+                pairs.push_back({std::min(a, *b), std::max(a, *b)});
         }
     }
-    const auto key = [](const Pair& pair) { return std::pair(pair.a, pair.b); };
-    std::sort(pairs_.begin(), pairs_.end(),
-              [&](const Pair& p, const Pair& q) { return key(p) < key(q); });
-    pairs_.erase(std::unique(pairs_.begin(), pairs_.end(),
-                             [&](const Pair& p, const Pair& q) { return key(p) == key(q); }),
-                 pairs_.end());
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
 }
-
-void PoseComparison::choose_same_poses() {
-    std::map<Mat4, std::vector<std::size_t>> of_pose;
-    for (std::size_t n = 0; n < poses_.size(); ++n) of_pose[poses_[n]].push_back(n);
-    for (const auto& [pose, frames] : of_pose) {
-        if (frames.size() < 2 || 2 * frames.size() < poses_.size() || frames.size() <= same_poses_)
-            continue;
-        same_poses_ = frames.size();
-        const std::size_t count = std::min(anchors, frames.size());
-        same_.clear();
-        for (std::size_t n = 0; n < count; ++n)
-            same_.push_back(frames[n * (frames.size() - 1) / (count - 1)]);
-    }
-}
-
-void PoseComparison::add(const DepthFrame& frame, std::size_t number) {
-    const auto at =
-        std::lower_bound(kept_.begin(), kept_.end(), number,
-                         [](const Kept& kept, std::size_t wanted) { return kept.number < wanted; });
-    if (at == kept_.end() || at->number != number) return;
-    at->depth.clear();
-    at->depth.reserve(std::size_t{width_} * height_);
-    for (std::uint32_t v = 0; v < intrinsics_.height; v += step_)
-        for (std::uint32_t u = 0; u < intrinsics_.width; u += step_)
-            at->depth.push_back(frame.depth[std::size_t{v} * intrinsics_.width + u]);
-}
-
-const PoseComparison::Kept* PoseComparison::kept(std::size_t number) const {
-    const auto at =
-        std::lower_bound(kept_.begin(), kept_.end(), number,
-                         [](const Kept& one, std::size_t wanted) { return one.number < wanted; });
-    return at == kept_.end() || at->number != number || at->depth.empty() ? nullptr : &*at;
-}
-
-void PoseComparison::carry(const Kept& from, const Kept& to, const Mat4& to_from_from,
-                           Agreement& into) const {
-    constexpr double sigmas = 3, near_m = 0.05;
-    // Two readings of one surface differ by no more than this share of their depth; beyond that and
-    // their noise there is an edge between them.
-    constexpr double edge_share = 0.05;
-    const Intrinsics& k = intrinsics_;
-    const Eigen::Isometry3d turn = isometry(to_from_from);
-    const std::uint32_t stride = std::max(1U, width_ / carried_columns);
-    for (std::uint32_t row = 0; row < height_; row += stride) {
-        for (std::uint32_t column = 0; column < width_; column += stride) {
-            const std::uint16_t stored = from.depth[std::size_t{row} * width_ + column];
-            if (stored == 0) continue;
-            ++into.carried;
-            const double z = stored / k.depth_scale;
-            const Eigen::Vector3d p = turn * Eigen::Vector3d((column * step_ - k.cx) / k.fx * z,
-                                                             (row * step_ - k.cy) / k.fy * z, z);
-            if (!(p.z() > near_m)) continue;
-            const double u = (p.x() / p.z() * k.fx + k.cx) / step_;
-            const double v = (p.y() / p.z() * k.fy + k.cy) / step_;
-            if (!(u >= 0 && v >= 0 && u < width_ - 1.0 && v < height_ - 1.0)) continue;
-            const std::size_t at =
-                static_cast<std::size_t>(v) * width_ + static_cast<std::size_t>(u);
-            const auto [least, most] = std::minmax(
-                {to.depth[at], to.depth[at + 1], to.depth[at + width_], to.depth[at + width_ + 1]});
-            if (least == 0) continue;
-            const double low = least / k.depth_scale, high = most / k.depth_scale;
-            const double noise = std::min(
-                sigmas * std::hypot(depth_sigma(p.z()), depth_sigma(high)), edge_share * p.z());
-            if (high - low > edge_share * high + 2 * noise) continue;
-            ++into.compared;
-            into.agreeing += p.z() >= low - noise && p.z() <= high + noise;
-            into.before += p.z() < low - noise;
-        }
-    }
-}
-
-namespace {
-
-using Agreements = std::array<PoseComparison::Agreement, pose_conventions>;
-
-std::vector<PoseConvention> better_than_given(const Agreements& found) {
-    const auto common = [&](std::size_t n) { return found[n].common_share(); };
-    std::vector<std::size_t> order;
-    for (std::size_t n = 0; n < pose_conventions; ++n) order.push_back(n);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return common(a) > common(b); });
-    const PoseComparison::Agreement &best = found[order[0]], &given = found[0];
-    if (best.agreeing_share() < least_agreeing || best.common_share() < least_common ||
-        given.agreeing_share() > most_given_agreeing * best.agreeing_share() ||
-        given.common_share() > most_given_common * best.common_share())
-        return {};
-    std::vector<PoseConvention> out;
-    for (const std::size_t n : order)
-        if (common(n) >= as_good * best.common_share())
-            out.push_back(static_cast<PoseConvention>(n));
-    return out;
-}
-
-}  // namespace
 
 PoseComparison::Verdict PoseComparison::verdict() const {
     Verdict out;
-    for (const Pair& pair : pairs_) {
-        const Kept *a = kept(pair.a), *b = kept(pair.b);
-        if (!a || !b) continue;
+    out.contradiction = find_contradiction();
+    if (!out.contradiction) return out;
+    for (const Pair& pair : turned_pairs()) {
+        if (!frames_.has(pair.a) || !frames_.has(pair.b)) continue;
         ++out.pairs;
         for (std::size_t n = 0; n < pose_conventions; ++n) {
             const auto convention = static_cast<PoseConvention>(n);
-            const Eigen::Isometry3d to_b = meant(isometry(poses_[pair.b]), convention).inverse() *
-                                           meant(isometry(poses_[pair.a]), convention);
-            carry(*a, *b, pose_of(to_b), out.agreement[n]);
-            carry(*b, *a, pose_of(to_b.inverse()), out.agreement[n]);
+            out.agreement[n] += frames_.compare(
+                pair.a, pair.b,
+                meant(poses_[pair.b], convention).inverse() * meant(poses_[pair.a], convention));
         }
     }
-    out.frames = poses_.size();
-    out.same_poses = same_poses_;
-    const Mat4 stays = pose_of(Eigen::Isometry3d::Identity());
-    for (std::size_t n = 1; n < same_.size(); ++n) {
-        const Kept *a = kept(same_[n - 1]), *b = kept(same_[n]);
-        if (!a || !b) continue;
-        carry(*a, *b, stays, out.at_one_pose);
-        carry(*b, *a, stays, out.at_one_pose);
-    }
-    out.moved = share_of(out.at_one_pose.compared, out.at_one_pose.carried) >= least_compared &&
-                out.at_one_pose.agreeing_share() < most_of_moved;
     out.better = better_than_given(out.agreement);
-    const Agreement& given = out.agreement[0];
-    out.contradict = out.pairs >= least_compared_pairs &&
-                     share_of(given.compared, given.carried) >= least_compared &&
-                     given.agreeing_share() < least_agreeing && given.before_share() > most_before;
     return out;
 }
 

@@ -77,42 +77,61 @@ void note_principal_point(const Intrinsics& k, ScanOrigin origin, std::vector<st
                     io::short_number(0.5 * (k.height - 1.0)) + ").");
 }
 
-std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin) {
+namespace {
+
+std::string counted_from_0(std::size_t frame) {
+    return "frame " + std::to_string(frame) + " (counted from 0)";
+}
+
+// From which frame on, by how many pairs, and how far off.
+std::string contradiction_text(const geometry::PoseContradiction& c, std::size_t frames) {
+    std::string text = c.until >= frames ? "The frames contradict each other from " +
+                                               counted_from_0(c.from) + " on: "
+                       : c.until == c.from + 1
+                           ? "One frame contradicts the others, " + counted_from_0(c.from) + ": "
+                           : "Frames contradict the others from " + counted_from_0(c.from) +
+                                 " to " + std::to_string(c.until - 1) + ": ";
+    text += "of " + io::counted(c.pairs, "pair") + " of frames that look at the same place " +
+            std::to_string(c.contradict) + (c.contradict == 1 ? " sees" : " see") +
+            " through what the other shows, first " + std::to_string(c.against) + " and " +
+            std::to_string(c.from) + ". ";
+    if (c.way_m > 0)
+        text += "Their cameras are off by about " + io::two_digits(c.way_m) + " m and " +
+                io::two_digits(c.turn_deg) + "\u00b0. ";
+    return text + "The poses were taken as they are, so that things are doubled or too wide. ";
+}
+
+}  // namespace
+
+std::string pose_note(const geometry::PoseComparison& frames, std::size_t count,
+                      ScanOrigin origin) {
     const bool in_folder = origin == ScanOrigin::frames_folder;
     const geometry::PoseComparison::Verdict found = frames.verdict();
+    if (!found.contradiction) return {};
+    const std::vector<PoseConvention>& better = found.better;
+    if (better.empty()) {
+        const std::string text = contradiction_text(*found.contradiction, count);
+        if (found.contradiction->same_pose)
+            return text + "It has the pose of the frame before it: were the poses filled in?";
+        return text +
+               "After a jump (a loop was closed, or tracking was lost) or drift give mended poses, "
+               "or leave these frames out; else check that the poses are those of the images, in "
+               "their order, and in metres, and that fx, fy, cx, cy and depth_scale of " +
+               (in_folder ? "intrinsics.json" : "the intrinsics") + " are the depth camera's.";
+    }
     const auto agreeing = [&](PoseConvention convention) {
         return percent(found.agreement[static_cast<std::size_t>(convention)].agreeing_share());
     };
-    const std::string seen = "of the readings of " + io::counted(found.pairs, "pair") +
-                             " of frames that look at the same place " +
-                             agreeing(PoseConvention::camera_to_world) +
-                             " lie on what the other frame sees there";
-    if (found.moved) {
-        const std::string poses = std::to_string(found.frames) + " poses are the same";
-        return (found.same_poses == found.frames
-                    ? "All " + poses
-                    : std::to_string(found.same_poses) + " of " + poses) +
-               ", but the images are not: only " + percent(found.at_one_pose.agreeing_share()) +
-               " of their readings are as near in the next that was compared. Were the poses "
-               "filled in?";
-    }
-    const std::vector<PoseConvention>& better = found.better;
-    if (better.empty()) {
-        if (!found.contradict) return {};
-        return "The frames contradict each other: " + seen + ", and " +
-               percent(found.agreement[0].before_share()) +
-               " lie before it, where that frame looks through. Check that the poses are those of "
-               "the images, in their order, and in metres, and that fx, fy, cx, cy and "
-               "depth_scale of " +
-               (in_folder ? "intrinsics.json" : "the intrinsics") + " are the depth camera's.";
-    }
     std::string words, mends;
     for (const PoseConvention convention : better) {
         words.append(words.empty() ? "" : ", or ").append(words_of(convention));
         mends.append(mends.empty() ? "" : ", or ").append(mend_of(convention));
     }
-    return "The poses seem to be in another convention: " + seen + ", but " +
-           agreeing(better.front()) + " if poses are taken to be " + words +
+    return "The poses seem to be in another convention: of the readings of " +
+           io::counted(found.pairs, "pair") + " of frames that look at the same place " +
+           agreeing(PoseConvention::camera_to_world) +
+           " lie on what the other frame sees there, but " + agreeing(better.front()) +
+           " if poses are taken to be " + words +
            (better.size() > 1 ? ", between which the frames do not tell" : "") +
            ". topple takes camera to world, camera x right, y down, z ahead: " +
            (in_folder ? "write into the file of poses" : "give as camera_to_world") + " " + mends +

@@ -16,9 +16,8 @@ namespace topple {
 void note_principal_point(const Intrinsics& intrinsics, ScanOrigin origin,
                           std::vector<std::string>& notes);
 
-// One pose for frames that differ; poses in another convention, in which the frames agree where
-// they don't as given; or frames that contradict each other in any; "": none of that. The frames
-// were added.
-std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin);
+// Frames that contradict each other, or poses in another convention, in which they do not; "": none
+// of that. All `count` frames were added.
+std::string pose_note(const geometry::PoseComparison& frames, std::size_t count, ScanOrigin origin);
 
 }  // namespace topple

@@ -95,7 +95,8 @@ Groundwork lay_groundwork(device::Device& device, Ingested input, const ParseOpt
     Groundwork out;
     out.voxel_m = voxel_for_input(input, options);
     out.offset_m = input.own.offset_m;
-    out.notes = input.notes;
+    // What the input may mean else comes first: its unit, sides, colours, poses and up.
+    out.notes = input.doubts;
     const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});
     note_small_extent(extent, input.origin, out.notes);
 
@@ -104,6 +105,7 @@ Groundwork lay_groundwork(device::Device& device, Ingested input, const ParseOpt
         return find_solids(device, input, out.voxel_m, options, stage);  // 2
     });
     if (!geometry.frame.note.empty()) out.notes.push_back(geometry.frame.note);
+    out.notes.insert(out.notes.end(), input.notes.begin(), input.notes.end());
     if (voxels.solids->primitives() == 0) no_surface(input, source, extent);
     out.parts = solid_parts(geometry, voxels);
     out.points = labelled_points(input, geometry, voxels);

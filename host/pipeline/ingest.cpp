@@ -93,10 +93,10 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
         tell(added_share * static_cast<double>(f + 1) / count);
     };
     for_each_frame(*out.frames, device.threads(), add, true);
-    note_principal_point(k, out.origin, out.notes);
+    note_principal_point(k, out.origin, out.doubts);
     // First, and at once: the shards that such poses give take long.
-    if (const std::string note = pose_note(comparison, out.origin); !note.empty()) {
-        out.notes.insert(out.notes.begin(), note);
+    if (const std::string note = pose_note(comparison, poses.size(), out.origin); !note.empty()) {
+        out.doubts.insert(out.doubts.begin(), note);
         if (options.notice) options.notice(note);
     }
     double polled = 0;
@@ -118,7 +118,7 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
     Ingested out;
     out.origin = ScanOrigin::frames_folder;
     out.camera_up = sequence.mean_camera_up();
-    out.notes = sequence.colours().notes();
+    out.doubts = sequence.colours().notes();
     std::vector<Mat4> poses;
     for (std::size_t i = 0; sequence.posed() && i < sequence.size(); ++i)
         poses.push_back(sequence.camera_to_world(i));
@@ -237,8 +237,8 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
     out.cell_m = std::clamp(cell_pitches * spacing.nearest_m, least_cell_m, largest_cell_m);
     out.sparse_cell_m = std::max(out.cell_m, cell_pitches * spacing.surface_m);
     out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
-    out.notes = cloud.notes;
-    if (!hint.empty()) out.notes.insert(out.notes.begin(), hint);
+    out.doubts = cloud.notes;
+    if (!hint.empty()) out.doubts.insert(out.doubts.begin(), hint);
     // A depth image's gaps are no news.
     if (cloud.dropped > 0 && cloud.height <= 1)
         out.notes.push_back(io::counted(cloud.dropped, "point") + " of " +
@@ -335,7 +335,7 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
     Ingested out;
     out.origin = ScanOrigin::frames_in_memory;
     out.camera_up = io::mean_camera_up(given.poses());
-    out.notes = given.notes();
+    out.doubts = given.notes();
     out.frames = std::move(stream);
     fuse_frames(device, given.posed() ? std::span(given.poses()) : std::span<const Mat4>(),
                 given.source(), options, out);
@@ -392,7 +392,7 @@ Ingested ingest_octomap(ScannedMap map, const ParseOptions& options) {
     out.cloud = out.own;
     check_count(out.cloud);
     check_spacing(out.cloud, map.space.voxel_m);
-    out.notes = out.own.notes;
+    out.doubts = out.own.notes;
     out.voxel_m = map.space.voxel_m;
     // Surfels are the map's voxels: other cells would hold now one layer of them, now two.
     out.cell_m = out.voxel_m / surfel_cells;

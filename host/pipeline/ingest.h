@@ -66,7 +66,9 @@ struct Ingested {
     double cell_m = 0;         // working resolution, from the point spacing and the sensor's noise
     double sparse_cell_m = 0;  // the same for the sparser parts of the surface; 0: no other
     std::optional<geometry::SurfelScale> surfels;  // none: cells of surfel_cells * cell_m
-    std::vector<std::string> notes;
+    // What of the input may mean something else than it was taken for, and what is to be known of
+    // it beside.
+    std::vector<std::string> doubts, notes;
 };
 
 // The working resolution that suits a depth camera: about the spacing of its pixels at the scene's

@@ -14,6 +14,7 @@
 #include "pipeline/groundwork.h"
 #include "pipeline/groundwork_file.h"
 #include "pipeline/ingest.h"
+#include "pipeline/nothing_judged.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/safety_stage.h"
 #include "pipeline/stage_clock.h"
@@ -202,7 +203,8 @@ void take_options(const ParseOptions& options) {
     if (!note.empty() && options.notice) options.notice(note);
 }
 
-// The result, whose notes begin with what the options make doubtful, and go on with `notes`.
+// The result, whose notes begin with what the options make doubtful, and go on with `notes`; before
+// them that nothing was judged, if so.
 ParseResult noted(ParseResult result, const ParseOptions& options,
                   std::vector<std::string> notes = {}) {
     std::vector<std::string> all;
@@ -214,6 +216,7 @@ ParseResult noted(ParseResult result, const ParseOptions& options,
     all.insert(all.end(), notes.begin(), notes.end());
     std::vector<std::string>& own = result.scene.notes;
     own.insert(own.begin(), all.begin(), all.end());
+    note_nothing_judged(result.scene);
     return result;
 }
 

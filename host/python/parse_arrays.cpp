@@ -209,7 +209,10 @@ void bind_parse(py::module_& module) {
                                const std::vector<std::string>& notes, const Vec3& offset_m) {
         Scene& scene = parsed.result.scene;
         scene.source = source;
-        scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
+        // First, but after that nothing was judged.
+        const bool judged =
+            scene.notes.empty() || !scene.notes[0].starts_with("Nothing was judged");
+        scene.notes.insert(scene.notes.begin() + (judged ? 0 : 1), notes.begin(), notes.end());
         for (std::size_t axis = 0; axis < 3; ++axis) scene.offset_m[axis] += offset_m[axis];
     });
     module.def("load", [](const std::string& folder) {

@@ -55,6 +55,7 @@ function fillBottom(scene) {
   put('energy', 'energy-panel', energyChart(scene.swc_energy));
   const notes = document.getElementById('notes');
   for (const note of scene.notes) notes.append(element('li', {text: note}));
+  notes.parentElement.classList.toggle('warning', nothingJudged(scene));
   if (!scene.notes.length) document.getElementById('notes-panel').hidden = true;
   document.getElementById('table-note').textContent =
     'Click a heading to sort. Where: as on the plan, and how high above ' + (scene.floor.known ? 'the floor' : 'the lowest that was scanned') + '. Barrier: the least energy that moves an object; release: what it sets free when its largest risk comes true. ' +

@@ -30,7 +30,7 @@ class Plan {
     const scale = Math.min((480 - left - right) / across, 440 / along), wide = scale * across, deep = scale * along;
     const svg = svgElement('svg', {viewBox: `0 0 480 ${(top + deep + bottom).toFixed(0)}`, role: 'img', class: 'plan',
       'aria-label': `Plan, ${across.toFixed(1)} by ${along.toFixed(1)} m; ` + (this.shown.length ? `at risk: ${this.shown.map(object =>
-        `${objectName(scene, object.id)}, ${placeText(scene, object)}`).join('; ')}` : 'nothing is at risk')});
+        `${objectName(scene, object.id)}, ${placeText(scene, object)}`).join('; ')}` : nothingJudged(scene) ? 'nothing was judged' : 'nothing is at risk')});
     const x = east => left + scale * east, y = north => top + deep - scale * north;
     const picture = this.picture(Math.round(2 * wide), Math.round(2 * deep));
     if (picture) svg.append(svgElement('image', {href: picture, x: left, y: top, width: wide, height: deep, preserveAspectRatio: 'none'}));

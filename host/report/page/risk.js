@@ -40,6 +40,11 @@ function tallOnes(scene) {
     .sort((a, b) => mostReleased(b) - mostReleased(a) || a.id - b.id);
 }
 
+// Whether no object has a risk that anything is known of: then a list without risks says nothing.
+function nothingJudged(scene) {
+  return !scene.objects.some(object => !object.grounded && object.seen_enough !== false);
+}
+
 // What may move, and nothing was seen to hold it: the largest first.
 function unseenOnes(scene) {
   const bulk = object => Array.isArray(object.size_m) ? object.size_m.reduce((product, side) => product * (side || 0), 1) : 0;
@@ -199,7 +204,7 @@ function fillRisk(panel, scene, on) {
   if (coarse) panel.append(element('p', {className: 'warning', text: coarse}));
   if (missing) panel.append(element('p', {className: 'warning', text: missing}));
   if (!worst.length) {
-    panel.append(element('p', {className: 'hint', text: !movable ? 'No object was found that could fall.'
+    panel.append(element('p', {className: 'hint', text: nothingJudged(scene) ? 'Nothing was judged: the first line of this page says why.'
       : `None of the disturbances puts ${doubtful.length ? 'any other' : 'an'} object at risk.`}));
   } else {
     fillRiskiest(panel, scene, worst, movable, on);

@@ -95,7 +95,7 @@ function fillSheet(scene) {
       'belongs together may have been told apart wrongly. Look before you act, and before you rely on it.', 'certificate'),
     ...[coarseText(scene), fewWalksText(scene)].filter(text => text).map(text => node('p', text, 'warning')),
     ...list('To do, from the top', act.map(doing), 0),
-    ...!act.length ? [node('p', 'Nothing was found that has to be fastened or moved.')] : [],
+    ...!act.length && !nothingJudged(scene) ? [node('p', 'Of what was judged nothing was found that has to be fastened or moved.')] : [],
     ...list('Already fixed: check the straps', (scene.corrections || []).filter(one => one.do === 'fixed' && one.held !== false).map(one => fixedLine(scene, one)), 0),
     ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
     ...list('To be looked at', looks, doubtful.length + nearly.length + tall.length + calm.length - looks.length),

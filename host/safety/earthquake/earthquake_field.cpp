@@ -273,8 +273,6 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
         fragilities(device, standing, which, records, friction, options.floor_amplification,
                     options.hazard ? &*options.hazard : nullptr);
     out.samples = arrows_below(*surroundings.cells, which, cells, stances, events, peaks);
-    if (out.samples.x.empty())
-        out.notes.push_back("No object of the scene can be moved by an earthquake.");
     return out;
 }
 
