@@ -28,12 +28,8 @@ constexpr std::size_t most_looked_through = 48, most_taken = 3, most_steps_back 
 // of one frame from the other.
 constexpr double least_before = 0.07, least_seen_through = 0.12, least_gain = 0.3;
 constexpr double most_left = 0.1, most_of_moved = 0.5;
-// A motion by less is as a step of what moves there, which other readings bear, and does no harm.
+// A motion by less is as a step of what moves there, which other readings bear.
 constexpr double least_way_m = 0.03, least_turn_rad = 0.026;
-// Half of the former of a motion shows drift where it does so in several pairs, and in this share
-// of all.
-constexpr double least_drifting = 0.05;
-constexpr std::size_t least_drifting_pairs = 3;
 // Contradictions without such a motion are told where they are this share of all pairs: thin things
 // at another scale are seen through, too.
 constexpr double least_unexplained = 0.04;
@@ -183,7 +179,7 @@ std::vector<PoseComparison::Pair> PoseComparison::pairs_in_time() const {
 }
 
 struct PoseComparison::Compared {
-    bool common = false, contradicts = false, drifts = false, fits = false;
+    bool common = false, contradicts = false, fits = false;
     bool aligned = false;  // by this:
     double way_m = 0, turn_rad = 0;
 };
@@ -194,49 +190,37 @@ PoseComparison::Compared PoseComparison::compare(const Pair& pair) const {
     Compared out;
     out.common = found.common_share() + found.before_share() >= least_visible;
     out.fits = out.common && found.seen_through_share() < most_of_fitting;
-    const auto seen_through = [&](double share) {
-        return found.before_share() >= share * least_before &&
-               found.seen_through_share() >= share * least_seen_through;
-    };
-    if (!seen_through(0.5)) return out;
+    if (found.before_share() < least_before || found.seen_through_share() < least_seen_through)
+        return out;
     const Isometry3d moved = frames_.align(pair.a, pair.b, given);
     const Agreement mended = frames_.compare(pair.a, pair.b, moved);
     const double gain = mended.agreeing_share() - found.agreeing_share();
     out.way_m = (moved.inverse().translation() - given.inverse().translation()).norm();
     out.turn_rad = turn_between(given, moved);
-    out.drifts = mended.seen_through_share() < most_left && gain >= 0.5 * least_gain &&
-                 (out.way_m >= least_way_m || out.turn_rad >= least_turn_rad);
-    out.contradicts = seen_through(1) && ((out.drifts && gain >= least_gain) ||
-                                          found.seen_through_share() >= most_of_moved);
-    out.aligned = out.drifts;
+    out.aligned = mended.seen_through_share() < most_left && gain >= least_gain &&
+                  (out.way_m >= least_way_m || out.turn_rad >= least_turn_rad);
+    out.contradicts = out.aligned || found.seen_through_share() >= most_of_moved;
     return out;
 }
 
 std::optional<PoseContradiction> PoseComparison::find_contradiction() const {
     ComparedPairs compared;
     PoseContradiction out;
-    std::size_t aligned = 0, drifting = 0;
+    std::size_t aligned = 0;
     for (const Pair& pair : pairs_in_time()) {
         compared.emplace_back(pair, compare(pair));
         const Compared& found = compared.back().second;
         out.pairs += found.common;
         out.contradict += found.contradicts;
-        aligned += found.contradicts && found.aligned;
-        drifting += found.drifts;
+        aligned += found.aligned;
     }
-    const auto share_of_pairs = [&](std::size_t count) {
-        return static_cast<double>(count) /
-               static_cast<double>(std::max<std::size_t>(1, out.pairs));
-    };
-    if (aligned == 0 && share_of_pairs(out.contradict) < least_unexplained) out.contradict = 0;
-    const bool drifts = out.contradict == 0 && drifting >= least_drifting_pairs &&
-                        share_of_pairs(drifting) >= least_drifting;
-    if (out.contradict == 0 && !drifts) return std::nullopt;
-    if (drifts) out.contradict = drifting;
+    const auto least = static_cast<std::size_t>(
+        aligned > 0 ? 1 : std::ceil(least_unexplained * static_cast<double>(out.pairs)));
+    if (out.contradict == 0 || out.contradict < least) return std::nullopt;
     out.from = out.until = frames_.size();
     std::vector<double> ways, turns;
     for (const auto& [pair, found] : compared) {
-        if (!(drifts ? found.drifts : found.contradicts)) continue;
+        if (!found.contradicts) continue;
         if (pair.b < out.from) {
             out.from = pair.b;
             out.against = pair.a;
@@ -245,7 +229,7 @@ std::optional<PoseContradiction> PoseComparison::find_contradiction() const {
         ways.push_back(found.way_m);
         turns.push_back(found.turn_rad);
     }
-    find_first(drifts, out);
+    find_first(out);
     out.until = fits_again(out.from, compared);
     out.same_pose = poses_[out.from].matrix() == poses_[out.from - 1].matrix();
     out.way_m = upper_quartile(std::move(ways));
@@ -255,13 +239,13 @@ std::optional<PoseContradiction> PoseComparison::find_contradiction() const {
 }
 
 // Few pairs may have told: all frames shortly before are compared with all that came earlier.
-void PoseComparison::find_first(bool drifts, PoseContradiction& out) const {
+void PoseComparison::find_first(PoseContradiction& out) const {
     constexpr std::size_t looked_back = 16;
     for (std::size_t b = out.from - std::min(out.from - 1, looked_back); b < out.from; ++b) {
         for (std::size_t a = b; a-- > 0;) {
             if (!frames_.has(a) || !frames_.has(b) || !look_at_one_place(a, b)) continue;
             const Compared found = compare({a, b});
-            if (!(drifts ? found.drifts : found.contradicts)) continue;
+            if (!found.contradicts) continue;
             out.from = b;
             out.against = a;
             return;

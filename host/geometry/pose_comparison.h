@@ -83,7 +83,7 @@ class PoseComparison {
     using ComparedPairs = std::vector<std::pair<Pair, Compared>>;
     bool look_at_one_place(std::size_t a, std::size_t b) const;
     Compared compare(const Pair& pair) const;
-    void find_first(bool drifts, PoseContradiction& out) const;
+    void find_first(PoseContradiction& out) const;
     std::size_t fits_again(std::size_t from, const ComparedPairs& compared) const;
 
     double field_of_view_, typical_depth_m_;
