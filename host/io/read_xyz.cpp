@@ -167,7 +167,7 @@ class XyzParser {
     void look_for_poses(std::size_t count) {
         std::array<double, PoseRows::most_columns> values{};
         for (std::size_t i = 0; i < std::min(count, values.size()); ++i)
-        if (!text_.number(tokens_[i], values[i])) values[i] = NAN;
+            if (!text_.number(tokens_[i], values[i])) values[i] = NAN;
         pose_rows_.add(values, count);
         if (pose_rows_.full()) refuse_poses();
     }

@@ -206,7 +206,7 @@ void check_attributes(double around_m, Ingested& out) {
         return std::to_string(std::lround(100 * share)) + " %";
     };
     if (given.normals_contradict()) {
-        out.notes.push_back(
+        out.doubts.push_back(
             "The normals that were given contradict the points: " + percent(given.askew) +
             " are far off the direction of the surface, and of the others " +
             percent(given.opposed) +
@@ -215,7 +215,7 @@ void check_attributes(double around_m, Ingested& out) {
         leave_out_normals(out);
     }
     if (out.cloud.red.empty() || given.colours_tell()) return;
-    out.notes.emplace_back(
+    out.doubts.emplace_back(
         given.one_colour ? "All points have one colour, which tells nothing: it was left out."
                          : "The colours that were given differ between neighbouring points as much "
                            "as between any others: they were left out.");

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
         std::fflush(stdout);
     }
     std::printf("%llu %s, %llu wrong\n", static_cast<unsigned long long>(seed - first),
-                kind == "calls" ? "times 40 calls" : "parses", static_cast<unsigned long long>(wrong));
+                kind == "calls" ? "times 40 calls" : "parses",
+                static_cast<unsigned long long>(wrong));
     return wrong > 0;
 }
