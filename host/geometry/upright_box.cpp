@@ -19,7 +19,7 @@ constexpr double off_floor_m = 0.15;
 // What lies so near a face is of it; spacings of samples, where these are far apart.
 constexpr double face_m = 0.03, face_spacings = 0.75;
 // Of what was seen, how much lies on the faces; of a face that counts as seen, how much was.
-constexpr double least_on_faces = 0.85, least_seen = 0.4;
+constexpr double least_on_faces = 0.85, least_seen_of_face = 0.4;
 // Which way a sample looks for its face, and how far sides are off right angles, degrees.
 constexpr double facing_cos = 0.7, side_degrees = 12;
 constexpr int peak_degrees = 3;
@@ -103,7 +103,7 @@ bool is_upright_box(const SurfaceSamples& s, const PrimitiveShape& p, double flo
     const std::array<double, 5> area{depth * height, depth * height, width * height, width * height,
                                      width * depth};
     const auto is_seen = [&](std::size_t face) {
-        return seen[face] * each_m2 >= least_seen * area[face];
+        return seen[face] * each_m2 >= least_seen_of_face * area[face];
     };
     return is_seen(4) && is_seen(0) + is_seen(1) + is_seen(2) + is_seen(3) >= 3;
 }
