@@ -231,7 +231,9 @@ TEST(PoseComparison, TellsFromWhichFrameOnPosesAreOff) {
             EXPECT_NEAR(double(found->from), double(c.from), 1);
             EXPECT_NEAR(double(found->until), double(c.until), 1) << c.from;
             const double way = Eigen::Vector3d(c.way_m.data()).norm();
-            if (c.turn_deg == 0 && way < 0.5) EXPECT_NEAR(found->way_m, way, 0.05) << c.from;
+            if (c.turn_deg == 0 && way < 0.5) {
+                EXPECT_NEAR(found->way_m, way, 0.05) << c.from;
+            }
             EXPECT_NEAR(found->turn_deg, c.turn_deg, 2.5) << c.from;
         }
         for (const double way_m : {0.03})

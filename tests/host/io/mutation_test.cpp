@@ -208,10 +208,10 @@ TEST_F(Mutation, intrinsics_trajectory_and_scene) {
                    EXPECT_LE(std::abs(pose[0]), 1 + 1e-9);
            });
     Scene scene;
-    scene.primitives.resize(1);
-    scene.objects.resize(1);
+    scene.primitives.emplace_back().id = 0;
+    scene.objects.emplace_back().id = 0;
     scene.objects[0].instability = {{0, 1}};
-    scene.contacts.resize(1);
+    scene.contacts = {{0, 0, 0.25, {0, 0, 1}, "fixed", 0.97}};
     scene.notes = {"a note"};
     mutate("s.json", scene_json(scene),
            [](const std::filesystem::path& file) { read_scene_json(file); });

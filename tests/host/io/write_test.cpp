@@ -58,6 +58,7 @@ Scene some_scene() {
     object.fall.hits_J = 5.25;
     object.fall.people_share = 0.125;
     scene.objects = {object};
+    for (const std::int32_t id : {1, 2, 3}) scene.objects.emplace_back().id = id;
     scene.contacts = {{0, 1, 0.25, {0, 0, 1}, "fixed", 0.97}};
     scene.supports = {{0, 1, 0.125, 0.875}};
     scene.timings_s = {{"ingest", 0.5}, {"normals", 0.25}};
@@ -182,7 +183,6 @@ TEST_F(Write, no_number_that_json_lacks_reaches_scene_json) {
     scene.up[0] = nan;
     scene.swc_energy[1] = inf;
     scene.timings_s[0].second = nan;
-    scene.manhattan_from_input[5] = nan;
     scene.notes.push_back("no UTF-8: \xff");
     const auto json = nlohmann::json::parse(scene_json(scene));
     EXPECT_TRUE(json["objects"][0]["barrier_J"].is_null());
@@ -335,7 +335,7 @@ TEST_F(Write, files_longer_than_the_buffer) {
 
 TEST_F(Write, what_is_not_solid_has_no_middle) {
     Scene scene;
-    scene.objects.resize(2);
+    for (const std::int32_t id : {0, 1}) scene.objects.emplace_back().id = id;
     scene.objects[0].box_middle_m = {1, 2, 3};
     const auto json = nlohmann::json::parse(scene_json(scene));
     EXPECT_EQ(json["objects"][0]["box_middle_m"], nlohmann::json({1.0, 2.0, 3.0}));
