@@ -22,17 +22,25 @@ constexpr unsigned overlap_stride = 16;
 // back the last is.
 constexpr std::size_t most_looked_through = 48, most_taken = 3, most_steps_back = 8;
 
-// A pair contradicts where so many readings are seen through, of all and of those that are not
-// hidden, and either a motion makes this much more of them agree and leaves few seen through; or
-// none was found, and those are most: then it is more than what moves in a room, which hides a part
-// of one frame from the other.
-constexpr double least_before = 0.07, least_seen_through = 0.12, least_gain = 0.3;
-constexpr double most_left = 0.1, most_of_moved = 0.5;
-// A motion by less is as a step of what moves there, which other readings bear.
-constexpr double least_way_m = 0.03, least_turn_rad = 0.026;
-// Contradictions without such a motion are told where they are this share of all pairs: thin things
-// at another scale are seen through, too.
-constexpr double least_unexplained = 0.04;
+// A pair may contradict where so many readings are seen through of those that are not hidden, and
+// does where a motion makes this much more of all agree, and nearly all that meet; in so many cells
+// of the images, and without spoiling what agreed: what moves in a room is a part of what is seen.
+constexpr double least_seen_through = 0.08, least_gain = 0.06;
+constexpr double least_mended_agreeing = 0.9, most_mended_seen_through = 0.03;
+constexpr std::uint64_t least_in_cell = 8;
+constexpr std::size_t least_mended_cells = 4;
+constexpr double least_cell_gain = 0.1, least_mended_share = 0.3, most_spoilt_share = 0.2;
+// Frames this near to one of the pair bear witness, which see so much of the other.
+constexpr std::size_t witness_steps = 2, least_witnesses = 2;
+constexpr double least_witnessed = 0.1, least_witness_gain = 0.03;
+constexpr double most_witness_seen_through = 0.04, least_witness_agreeing = 0.85;
+// Or none was found, and most are seen through, and in most cells.
+constexpr double least_before = 0.07, most_of_moved = 0.5, least_seen_through_cells = 0.6;
+// A motion by less does little harm, and poses of true cameras are off by some of it.
+constexpr double least_way_m = 0.08, least_turn_rad = 0.056;
+// Contradictions without such a motion are told where they are this share of all pairs: someone who
+// walks near before the camera all along hides most of what it sees in fewer.
+constexpr double least_unexplained = 0.45;
 // With so few seen through, a frame fits.
 constexpr double most_of_fitting = 0.05;
 
@@ -123,10 +131,9 @@ std::vector<PoseConvention> better_than_given(
     return out;
 }
 
-// What so many of them stay below.
-double upper_quartile(std::vector<double> values) {
+double median(std::vector<double> values) {
     if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(3 * values.size() / 4);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
@@ -174,6 +181,7 @@ std::vector<PoseComparison::Pair> PoseComparison::pairs_in_time() const {
             ++taken;
         }
         if (last < b) pairs.push_back({last, b});
+        if (last + 1 != b && frames_.has(b - 1)) pairs.push_back({b - 1, b});
     }
     return pairs;
 }
@@ -181,25 +189,95 @@ std::vector<PoseComparison::Pair> PoseComparison::pairs_in_time() const {
 struct PoseComparison::Compared {
     bool common = false, contradicts = false, fits = false;
     bool aligned = false;  // by this:
-    double way_m = 0, turn_rad = 0;
+    double way_m = 0, turn_rad = 0, doubled_m = 0;
 };
+
+// Whether a motion of the whole frame mends what contradicts, and does so all over the image.
+bool PoseComparison::mends(const SmallFrames::Cells& given, const SmallFrames::Cells& moved) {
+    const Agreement is = sum(given), would = sum(moved);
+    if (would.agreeing_share() < least_mended_agreeing ||
+        would.seen_through_share() > most_mended_seen_through ||
+        would.common_share() - is.common_share() < least_gain)
+        return false;
+    std::size_t shown = 0, mended = 0, spoilt = 0;
+    for (std::size_t n = 0; n < given.size(); ++n) {
+        if (given[n].carried < least_in_cell ||
+            given[n].compared + moved[n].compared < least_in_cell)
+            continue;
+        const double gain = moved[n].common_share() - given[n].common_share();
+        ++shown;
+        mended += gain > least_cell_gain;
+        spoilt += gain < -least_cell_gain;
+    }
+    return mended >= least_mended_cells &&
+           static_cast<double>(mended) >= least_mended_share * static_cast<double>(shown) &&
+           static_cast<double>(spoilt) <= most_spoilt_share * static_cast<double>(mended);
+}
+
+// Whether frames near in time to one of the pair, or to either, with the same motion fit the other,
+// too: what moves in the room has moved on in them.
+bool PoseComparison::has_witnesses(const Pair& pair, const Isometry3d& moved) const {
+    struct Witnesses {
+        std::size_t fit = 0, seen = 0;
+        bool agree() const { return fit >= least_witnesses && 2 * fit > seen; }
+    };
+    const auto hear = [&](Witnesses& heard, std::size_t a, std::size_t b,
+                          const Isometry3d& motion) {
+        const Agreement would = sum(frames_.compare(a, b, motion));
+        if (would.common_share() + would.before_share() < least_witnessed) return;
+        const Agreement is = sum(frames_.compare(a, b, poses_[b].inverse() * poses_[a]));
+        ++heard.seen;
+        heard.fit += would.seen_through_share() <= most_witness_seen_through &&
+                     would.agreeing_share() >= least_witness_agreeing &&
+                     would.common_share() > is.common_share() + least_witness_gain;
+    };
+    Witnesses before, after;
+    for (std::size_t n = pair.a - std::min(pair.a, witness_steps);
+         n < std::min(pair.b, pair.a + witness_steps + 1); ++n)
+        if (n != pair.a && frames_.has(n))
+            hear(before, n, pair.b, moved * poses_[pair.a].inverse() * poses_[n]);
+    for (std::size_t n = std::max(pair.a + 1, pair.b - std::min(pair.b, witness_steps));
+         n < std::min(frames_.size(), pair.b + witness_steps + 1); ++n)
+        if (n != pair.b && frames_.has(n))
+            hear(after, pair.a, n, poses_[n].inverse() * poses_[pair.b] * moved);
+    return before.agree() || after.agree() ||
+           Witnesses{before.fit + after.fit, before.seen + after.seen}.agree();
+}
 
 PoseComparison::Compared PoseComparison::compare(const Pair& pair) const {
     const Isometry3d given = poses_[pair.b].inverse() * poses_[pair.a];
-    const Agreement found = frames_.compare(pair.a, pair.b, given);
+    const SmallFrames::Cells cells = frames_.compare(pair.a, pair.b, given);
+    const Agreement found = sum(cells);
     Compared out;
     out.common = found.common_share() + found.before_share() >= least_visible;
     out.fits = out.common && found.seen_through_share() < most_of_fitting;
-    if (found.before_share() < least_before || found.seen_through_share() < least_seen_through)
+    if (!out.common || found.seen_through_share() < least_seen_through) return out;
+    std::vector<Isometry3d> guesses{given};
+    // As the camera moved before.
+    if (pair.a > 0 && pair.b == pair.a + 1)
+        guesses.push_back(poses_[pair.a].inverse() * poses_[pair.a - 1]);
+    for (const Isometry3d& guess : guesses) {
+        const Isometry3d moved = frames_.align(pair.a, pair.b, guess);
+        out.way_m = (moved.inverse().translation() - given.inverse().translation()).norm();
+        out.turn_rad = turn_between(given, moved);
+        if (out.way_m < least_way_m && out.turn_rad < least_turn_rad) continue;
+        if (!mends(cells, frames_.compare(pair.a, pair.b, moved))) continue;
+        if (!has_witnesses(pair, moved)) continue;
+        const Eigen::Vector3d seen(0, 0, typical_depth_m_);
+        out.doubled_m = (moved * seen - given * seen).norm();
+        out.aligned = out.contradicts = true;
         return out;
-    const Isometry3d moved = frames_.align(pair.a, pair.b, given);
-    const Agreement mended = frames_.compare(pair.a, pair.b, moved);
-    const double gain = mended.agreeing_share() - found.agreeing_share();
-    out.way_m = (moved.inverse().translation() - given.inverse().translation()).norm();
-    out.turn_rad = turn_between(given, moved);
-    out.aligned = mended.seen_through_share() < most_left && gain >= least_gain &&
-                  (out.way_m >= least_way_m || out.turn_rad >= least_turn_rad);
-    out.contradicts = out.aligned || found.seen_through_share() >= most_of_moved;
+    }
+    // More than what moves there, which hides a part of one frame from the other.
+    std::size_t shown = 0, seen_through = 0;
+    for (const Agreement& cell : cells) {
+        if (cell.before + cell.agreeing < least_in_cell) continue;
+        ++shown;
+        seen_through += cell.seen_through_share() >= most_of_moved;
+    }
+    out.contradicts =
+        found.before_share() >= least_before && found.seen_through_share() >= most_of_moved &&
+        static_cast<double>(seen_through) >= least_seen_through_cells * static_cast<double>(shown);
     return out;
 }
 
@@ -218,7 +296,7 @@ std::optional<PoseContradiction> PoseComparison::find_contradiction() const {
         aligned > 0 ? 1 : std::ceil(least_unexplained * static_cast<double>(out.pairs)));
     if (out.contradict == 0 || out.contradict < least) return std::nullopt;
     out.from = out.until = frames_.size();
-    std::vector<double> ways, turns;
+    std::vector<double> ways, turns, doubled;
     for (const auto& [pair, found] : compared) {
         if (!found.contradicts) continue;
         if (pair.b < out.from) {
@@ -228,12 +306,14 @@ std::optional<PoseContradiction> PoseComparison::find_contradiction() const {
         if (!found.aligned) continue;
         ways.push_back(found.way_m);
         turns.push_back(found.turn_rad);
+        doubled.push_back(found.doubled_m);
     }
     find_first(out);
     out.until = fits_again(out.from, compared);
     out.same_pose = poses_[out.from].matrix() == poses_[out.from - 1].matrix();
-    out.way_m = upper_quartile(std::move(ways));
-    out.turn_deg = upper_quartile(std::move(turns)) * 180 / std::numbers::pi;
+    out.way_m = median(std::move(ways));
+    out.doubled_m = median(std::move(doubled));
+    out.turn_deg = median(std::move(turns)) * 180 / std::numbers::pi;
     for (std::size_t* number : {&out.from, &out.until, &out.against}) *number *= every_;
     return out;
 }
@@ -311,9 +391,9 @@ PoseComparison::Verdict PoseComparison::verdict() const {
         ++out.pairs;
         for (std::size_t n = 0; n < pose_conventions; ++n) {
             const auto convention = static_cast<PoseConvention>(n);
-            out.agreement[n] += frames_.compare(
+            out.agreement[n] += sum(frames_.compare(
                 pair.a, pair.b,
-                meant(poses_[pair.b], convention).inverse() * meant(poses_[pair.a], convention));
+                meant(poses_[pair.b], convention).inverse() * meant(poses_[pair.a], convention)));
         }
     }
     out.better = better_than_given(out.agreement);

@@ -44,6 +44,7 @@ struct PoseContradiction {
     // By how much they are off: how far, and by what turn, a camera is to be moved so that the
     // surfaces meet; 0: no such motion was found.
     double way_m = 0, turn_deg = 0;
+    double doubled_m = 0;  // how far apart things before the camera then lie twice
 };
 
 // Tells from depth frames whether their poses fit: each is compared with the one before it, and
@@ -82,6 +83,8 @@ class PoseComparison {
     std::optional<PoseContradiction> find_contradiction() const;
     using ComparedPairs = std::vector<std::pair<Pair, Compared>>;
     bool look_at_one_place(std::size_t a, std::size_t b) const;
+    static bool mends(const SmallFrames::Cells& given, const SmallFrames::Cells& moved);
+    bool has_witnesses(const Pair& pair, const Eigen::Isometry3d& moved) const;
     Compared compare(const Pair& pair) const;
     void find_first(PoseContradiction& out) const;
     std::size_t fits_again(std::size_t from, const ComparedPairs& compared) const;

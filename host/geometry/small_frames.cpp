@@ -36,6 +36,12 @@ Eigen::Isometry3d motion_of(const Vector6& turn_and_way) {
 
 }  // namespace
 
+Agreement sum(std::span<const Agreement> cells) {
+    Agreement out;
+    for (const Agreement& cell : cells) out += cell;
+    return out;
+}
+
 Agreement& Agreement::operator+=(const Agreement& other) {
     carried += other.carried;
     compared += other.compared;
@@ -97,7 +103,7 @@ std::optional<SmallFrames::Patch> SmallFrames::patch_at(std::size_t frame,
 
 template <class Use>
 void SmallFrames::each_met(std::size_t from, std::size_t to, const Eigen::Isometry3d& motion,
-                           unsigned stride, Use use, Agreement* counted) const {
+                           unsigned stride, Use use, Agreement* cells) const {
     // What is turned away from the other camera it can't see, nor see through.
     constexpr double least_facing = 0.15;
     for (std::uint32_t row = 0; row + 1 < height_; row += stride) {
@@ -105,34 +111,43 @@ void SmallFrames::each_met(std::size_t from, std::size_t to, const Eigen::Isomet
             const auto read = patch(from, column, row);
             if (!read) continue;
             const Eigen::Vector3d there = motion * read->middle;
-            if (counted != nullptr) ++counted->carried;
+            const std::size_t cell =
+                row * cells_up / height_ * cells_across + column * cells_across / width_;
+            if (cells != nullptr) ++cells[cell].carried;
             if (-(motion.linear() * read->normal).dot(there) < least_facing * there.norm())
                 continue;
             if (const auto seen = patch_at(to, there))
-                use(there, seen->normal, seen->normal.dot(there - seen->middle),
+                use(cell, there, seen->normal, seen->normal.dot(there - seen->middle),
                     std::max(read->middle.z(), there.z()));
         }
     }
 }
 
-Agreement SmallFrames::carry(std::size_t from, std::size_t to, const Eigen::Isometry3d& motion,
-                             unsigned stride) const {
-    Agreement out;
-    const auto count = [&](const Eigen::Vector3d&, const Eigen::Vector3d&, double before_m,
-                           double depth_m) {
+void SmallFrames::carry_cells(std::size_t from, std::size_t to, const Eigen::Isometry3d& motion,
+                              unsigned stride, Agreement* cells) const {
+    const auto count = [&](std::size_t cell, const Eigen::Vector3d&, const Eigen::Vector3d&,
+                           double before_m, double depth_m) {
         const double tolerance = tolerance_m(depth_m);
-        ++out.compared;
-        out.agreeing += std::abs(before_m) <= tolerance;
-        out.before += before_m > tolerance;
+        ++cells[cell].compared;
+        cells[cell].agreeing += std::abs(before_m) <= tolerance;
+        cells[cell].before += before_m > tolerance;
     };
-    each_met(from, to, motion, stride, count, &out);
-    return out;
+    each_met(from, to, motion, stride, count, cells);
 }
 
-Agreement SmallFrames::compare(std::size_t a, std::size_t b,
-                               const Eigen::Isometry3d& motion) const {
-    Agreement out = carry(a, b, motion, compared_stride);
-    return out += carry(b, a, motion.inverse(), compared_stride);
+Agreement SmallFrames::carry(std::size_t from, std::size_t to, const Eigen::Isometry3d& motion,
+                             unsigned stride) const {
+    std::array<Agreement, cells_across * cells_up> cells;
+    carry_cells(from, to, motion, stride, cells.data());
+    return sum(cells);
+}
+
+SmallFrames::Cells SmallFrames::compare(std::size_t a, std::size_t b,
+                                        const Eigen::Isometry3d& motion) const {
+    Cells out;
+    carry_cells(a, b, motion, compared_stride, out.data());
+    carry_cells(b, a, motion.inverse(), compared_stride, out.data() + cells_across * cells_up);
+    return out;
 }
 
 Eigen::Isometry3d SmallFrames::align(std::size_t from, std::size_t to,
@@ -144,8 +159,8 @@ Eigen::Isometry3d SmallFrames::align(std::size_t from, std::size_t to,
         Matrix6 normal = Matrix6::Zero();
         Vector6 right = Vector6::Zero();
         std::size_t met = 0;
-        const auto add = [&](const Eigen::Vector3d& there, const Eigen::Vector3d& facing,
-                             double before_m, double depth_m) {
+        const auto add = [&](std::size_t, const Eigen::Vector3d& there,
+                             const Eigen::Vector3d& facing, double before_m, double depth_m) {
             const double far = before_m / reach_m;
             if (std::abs(far) > 1) return;
             constexpr double floor_m = 0.01;

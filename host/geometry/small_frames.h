@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "topple/input.h"
@@ -34,6 +36,8 @@ struct Agreement {
     }
 };
 
+Agreement sum(std::span<const Agreement> cells);
+
 // Small copies of depth frames, about 80 x 60 readings each, by which it is told whether poses fit:
 // readings of one are carried into another. Motions take points of the one camera to the other.
 class SmallFrames {
@@ -47,8 +51,10 @@ class SmallFrames {
     // Of every `stride`-th reading in a row and column.
     Agreement carry(std::size_t from, std::size_t to, const Eigen::Isometry3d& motion,
                     unsigned stride) const;
-    // Both ways.
-    Agreement compare(std::size_t a, std::size_t b, const Eigen::Isometry3d& motion) const;
+    // Both ways, of each of the cells into which the images of both are parted.
+    static constexpr std::size_t cells_across = 4, cells_up = 4;
+    using Cells = std::array<Agreement, 2 * cells_across * cells_up>;
+    Cells compare(std::size_t a, std::size_t b, const Eigen::Isometry3d& motion) const;
 
     // The motion near `guess` by which the frames' surfaces meet: Gauss-Newton steps on the
     // distances of carried readings to the patches there, those within a reach that shrinks.
@@ -64,7 +70,9 @@ class SmallFrames {
     Eigen::Vector3d point(std::uint32_t column, std::uint32_t row, std::uint16_t stored) const;
     template <class Use>
     void each_met(std::size_t from, std::size_t to, const Eigen::Isometry3d& motion,
-                  unsigned stride, Use use, Agreement* counted = nullptr) const;
+                  unsigned stride, Use use, Agreement* cells = nullptr) const;
+    void carry_cells(std::size_t from, std::size_t to, const Eigen::Isometry3d& motion,
+                     unsigned stride, Agreement* cells) const;
 
     Intrinsics intrinsics_;
     std::uint32_t step_, width_, height_;

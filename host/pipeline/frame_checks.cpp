@@ -98,7 +98,9 @@ std::string contradiction_text(const geometry::PoseContradiction& c, std::size_t
     if (c.way_m > 0)
         text += "Their cameras are off by about " + io::two_digits(c.way_m) + " m and " +
                 io::two_digits(c.turn_deg) + "\u00b0. ";
-    return text + "The poses were taken as they are, so that things are doubled or too wide. ";
+    return text + "The poses were taken as they are, so that things are doubled" +
+           (c.doubled_m > 0 ? ", about " + io::two_digits(c.doubled_m) + " m apart," : "") +
+           " or too wide. ";
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ Mat4 given_as(PoseConvention convention, const Mat4& truth) {
 
 scenes::CameraOptions small_camera(unsigned frames) {
     scenes::CameraOptions camera;
-    camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
+    camera.intrinsics = {64, 48, 55, 55, 31.5, 23.5, 1000};
     camera.frames = frames;
     return camera;
 }
@@ -95,7 +95,7 @@ std::vector<PoseConvention> better(const scenes::Sequence& frames, PoseConventio
 }
 
 TEST(PoseComparison, NamesTheConventionInWhichFramesAgree) {
-    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    for (const std::uint64_t seed : {1U, 2U}) {
         scenes::RoomOptions room;
         room.seed = seed;
         room.tilt_deg = seed == 2 ? 20 : 0;
@@ -103,13 +103,12 @@ TEST(PoseComparison, NamesTheConventionInWhichFramesAgree) {
             scenes::walk(scenes::furnished_room(room), small_camera(30));
         for (std::size_t n = 0; n < pose_conventions; ++n) {
             const auto convention = static_cast<PoseConvention>(n);
-            const std::vector<PoseConvention> found = better(frames, convention);
+            const PoseComparison::Verdict found = comparison(frames, convention).verdict();
             if (n == 0)
-                EXPECT_THAT(found, IsEmpty()) << seed;
+                EXPECT_THAT(found.better, IsEmpty()) << seed;
             else
-                EXPECT_THAT(found, ElementsAre(convention)) << seed;
-            EXPECT_EQ(comparison(frames, convention).verdict().contradiction.has_value(), n != 0)
-                << seed;
+                EXPECT_THAT(found.better, ElementsAre(convention)) << seed;
+            EXPECT_EQ(found.contradiction.has_value(), n != 0) << seed;
             const Mat4& truth = frames.frames[7].camera_to_world;
             EXPECT_LT((matrix(pose_meant(given_as(convention, truth), convention)) - matrix(truth))
                           .cwiseAbs()
@@ -219,7 +218,8 @@ TEST(PoseComparison, TellsFromWhichFrameOnPosesAreOff) {
     for (const std::uint64_t seed : {1U, 2U}) {
         const scenes::Sequence walk = arc(seed, count);
         EXPECT_FALSE(after_jump(walk, 0, count, {0.3, 0, 0}, 5)) << "moved as one";
-        for (const Case& c : {Case{8, count, {0, 0.25, 0}, 0},
+        for (const Case& c : {Case{8, count, {0.15, 0, 0}, 0},
+                              {8, count, {0, 1.1, 0}, 0},
                               {8, count, {0.2, 0.27, 0}, 4},
                               {13, count, {0, 0.6, 0}, 0},
                               {5, count, {0, 0, 0.3}, 0},
@@ -227,29 +227,47 @@ TEST(PoseComparison, TellsFromWhichFrameOnPosesAreOff) {
                               {10, 11, {0.3, 0.2, 0}, 0},
                               {9, 14, {-0.3, 0.2, 0}, 0}}) {
             const auto found = after_jump(walk, c.from, c.until, c.way_m, c.turn_deg);
-            ASSERT_TRUE(found) << seed << " from " << c.from;
+            EXPECT_TRUE(found) << seed << " from " << c.from << " by " << c.way_m[0] << ' '
+                               << c.way_m[1] << ' ' << c.way_m[2];
+            if (!found) continue;
             EXPECT_NEAR(double(found->from), double(c.from), 1);
             EXPECT_NEAR(double(found->until), double(c.until), 1) << c.from;
             const double way = Eigen::Vector3d(c.way_m.data()).norm();
-            if (c.turn_deg == 0 && way < 0.5) {
-                EXPECT_NEAR(found->way_m, way, 0.05) << c.from;
+            if (c.turn_deg == 0) {
+                EXPECT_NEAR(found->way_m, way, 0.1) << c.from;
             }
-            EXPECT_NEAR(found->turn_deg, c.turn_deg, 2.5) << c.from;
+            EXPECT_NEAR(found->turn_deg, c.turn_deg, 2) << c.from;
+            if (c.turn_deg == 0) {
+                EXPECT_NEAR(found->doubled_m, way, 0.05) << c.from;
+            }
         }
-        for (const double way_m : {0.03})
+        for (const double way_m : {0.015, 0.03})
             EXPECT_TRUE(after_jump(walk, 0, count, {way_m, 0, 0}, 0, true)) << way_m;
     }
 }
 
-// Someone walks through before the camera: that is a part of what frames see.
+// Someone walks along before the camera, near and far, or a thing is moved away: that is a part of
+// what frames see.
 TEST(PoseComparison, WhatMovesInTheRoomIsNotThePoses) {
-    scenes::Sequence walk = arc(1, 20);
-    for (std::size_t n = 0; n < 20; ++n)
-        for (std::size_t v = 8; v < 72; ++v)
-            for (std::size_t u = 0; u < 24; ++u)
-                walk.frames[n].depth[v * 96 + (u + 3 * n)] =
-                    static_cast<std::uint16_t>(900 + 20 * (n % 7));
-    EXPECT_FALSE(comparison(walk, PoseConvention::camera_to_world).verdict().contradiction);
+    const scenes::Sequence still = arc(1, 20);
+    for (const bool walks : {true, false}) {
+        for (const unsigned depth_mm : {900U, 1500U, 2300U}) {
+            scenes::Sequence frames = still;
+            const unsigned wide = 14'000 / depth_mm;
+            for (unsigned n = 0; n < 20; ++n)
+                for (std::size_t v = walks ? 6 : 24; v < 48; ++v)
+                    for (std::size_t u = 0; u < wide; ++u) {
+                        const std::size_t left = walks ? 2 * n : n < 10 ? 12 : 32;
+                        auto& depth = frames.frames[n].depth[v * 64 + left + u];
+                        depth = static_cast<std::uint16_t>(
+                            std::min<unsigned>(depth == 0 ? depth_mm : depth,
+                                               walks ? depth_mm + 20 * (n % 7) : depth_mm));
+                    }
+            EXPECT_FALSE(
+                comparison(frames, PoseConvention::camera_to_world).verdict().contradiction)
+                << walks << ' ' << depth_mm;
+        }
+    }
 }
 
 TEST(PoseComparison, OnePoseForFramesThatDiffer) {
@@ -274,7 +292,7 @@ TEST(PoseComparison, PoorPosesInTheRightConventionAreNoOther) {
     const scenes::Sequence walk = scenes::walk(scenes::furnished_room({}), small_camera(30));
     scenes::Sequence scaled = walk, backwards = walk, zoomed = walk;
     for (DepthFrame& frame : scaled.frames)
-        for (const std::size_t axis : {3U, 7U, 11U}) frame.camera_to_world[axis] *= 3;
+        for (const std::size_t axis : {3U, 7U, 11U}) frame.camera_to_world[axis] *= 0.3;
     for (std::size_t n = 0; n < walk.frames.size(); ++n)
         backwards.frames[n].depth = walk.frames[walk.frames.size() - 1 - n].depth;
     zoomed.intrinsics.fx = zoomed.intrinsics.fy = 2 * walk.intrinsics.fx;
