@@ -28,7 +28,7 @@ void end_so(int, char**, char**) {
     std::set_terminate(end_without_memory);
 }
 
-[[gnu::used, gnu::section(".preinit_array")]] void (*const before_libraries)(int, char**,
-                                                                             char**) = end_so;
+[[gnu::used, gnu::section(".preinit_array")]] void (*const first_of_all)(int, char**,
+                                                                         char**) = end_so;
 
 }  // namespace
