@@ -257,7 +257,7 @@ constexpr const char* block_name = "block-0";
 constexpr const char* bins_name = "bins.bin";
 constexpr const char* cells_name = "cells-0_0_0";
 
-constexpr Reader all[] = {
+constexpr Reader listed[] = {
     {"solids", solids_name, read_as_solids, made<solids_name, solids_mark>},
     {"groundwork", cache_name, read_as_groundwork, made<cache_name, work_mark>},
     {"block", block_name, read_as_block, made<block_name, work_mark>},
@@ -272,7 +272,7 @@ constexpr Reader all[] = {
 }  // namespace
 
 std::span<const Reader> own_files() {
-    return all;
+    return listed;
 }
 
 }  // namespace topple::fuzz

@@ -71,8 +71,8 @@ TEST(ScanLook, spans_the_scene_along_its_own_axes) {
     const auto device = device::open_device("native");
     for (const double degrees : {0.0, 30.0}) {
         const ScanLook look = look_at_scan(*device, box_on_floor(degrees, true), 0.02, 17, {});
-        EXPECT_NEAR(look.ground_m2, 16, 0.5) << degrees;
-        EXPECT_NEAR(look.box_m3, 8, 0.5) << degrees;
+        EXPECT_NEAR(look.box.ground_m2, 16, 0.5) << degrees;
+        EXPECT_NEAR(look.box.m3(), 8, 0.5) << degrees;
     }
 }
 
