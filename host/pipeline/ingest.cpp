@@ -64,8 +64,8 @@ void note_single_frame(Ingested& out) {
     out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
 }
 
-void note_colours(Ingested& out) {
-    if (out.cloud.red.empty()) out.notes.emplace_back(no_colours_note);
+void note_colours(bool given, Ingested& out) {
+    if (!given) out.notes.emplace_back(no_colours_note);
 }
 
 // Fuses out.frames, called `source`. poses: as they were given, of each; none of a single frame.
@@ -109,7 +109,7 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     out.viewpoints = std::move(fused.viewpoints);
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
     if (poses.empty()) note_single_frame(out);
-    note_colours(out);
+    note_colours(!out.cloud.red.empty(), out);
 }
 
 Ingested ingest_folder(device::Device& device, const std::filesystem::path& folder,
@@ -317,8 +317,9 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
         out.cloud = out.own;
     }
     check_viewpoint_distance(out.cloud);
+    const bool coloured = !out.cloud.red.empty();
     look_at_cloud(device, options, out);
-    note_colours(out);
+    note_colours(coloured, out);
     return out;
 }
 
@@ -435,7 +436,7 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     const bool mesh = io::is_mesh(input);
     Ingested out = ingest_cloud(device, std::move(map.cloud), options,
                                 mesh ? ScanOrigin::mesh_file : ScanOrigin::cloud_file);
-    if (!mesh) note_colours(out);
+    if (!mesh) note_colours(!out.own.red.empty(), out);
     out.format_up = io::up_of_format(input);
     return out;
 }

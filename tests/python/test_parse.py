@@ -277,7 +277,7 @@ def test_a_peak_in_another_unit_is_told(points, device):
 
 def test_errors_of_options_and_devices(points):
     for option, value, words in (('tile_m', 5, '^tile_m 5: only clouds in files'), ('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
-                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes: allow that much, or use a larger voxel_m$'),
+                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes: allow more, or give fewer points$'),
                                  ('disturbances', ['wind', 'wind'], '^disturbances: wind is given twice; name each once$'),
                                  ('disturbances', 'flood', '^disturbances flood: expected human, wind or')):
         with pytest.raises(topple.Error, match=words) as raised:
@@ -327,7 +327,7 @@ def test_viewpoints_that_are_not_finite_are_told(points, device):
 def test_points_in_centimetres_are_told(device):
     patch = np.random.default_rng(3).random((2000, 3), np.float32) * np.float32([4, 4, 0.001])
     corners = np.concatenate([patch + np.float32(at) for at in ((0, 0, 0), (120, 0, 0), (0, 120, 0), (0, 0, 120))])
-    with pytest.raises(topple.Error, match=r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*voxel_m=.* or larger') as raised:
+    with pytest.raises(topple.Error, match=r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*or use voxel_m=') as raised:
         quick(corners, device, voxel_m=0.02)
     assert raised.value.kind == 'input'
 
