@@ -67,9 +67,10 @@ void take_coordinates(Ingested& input, ScenePoints& out) {
     out.x.assign(input.cloud.x.begin(), input.cloud.x.end());
     out.y.assign(input.cloud.y.begin(), input.cloud.y.end());
     out.z.assign(input.cloud.z.begin(), input.cloud.z.end());
-    out.red.assign(input.cloud.red.begin(), input.cloud.red.end());
-    out.green.assign(input.cloud.green.begin(), input.cloud.green.end());
-    out.blue.assign(input.cloud.blue.begin(), input.cloud.blue.end());
+    const auto& [red, green, blue] = input.given_colours;
+    out.red.assign(red.begin(), red.end());
+    out.green.assign(green.begin(), green.end());
+    out.blue.assign(blue.begin(), blue.end());
 }
 
 ScenePoints labelled_points(Ingested& input, const GeometryStage& geometry,

@@ -317,9 +317,9 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
         out.cloud = out.own;
     }
     check_viewpoint_distance(out.cloud);
-    const bool coloured = !out.cloud.red.empty();
+    out.given_colours = {out.cloud.red, out.cloud.green, out.cloud.blue};
     look_at_cloud(device, options, out);
-    note_colours(coloured, out);
+    note_colours(!out.given_colours[0].empty(), out);
     return out;
 }
 

@@ -50,6 +50,7 @@ struct Ingested {
     // points that were not finite; then `index` holds the place of each in the arrays or the file.
     CloudView cloud;
     PointCloud own;
+    std::array<ByteColumn, 3> given_colours;  // the caller's, which `cloud` may lack
     std::vector<std::uint64_t> index;
     std::uint32_t image_width = 0, image_height = 0;  // as in ParseResult
     std::vector<Vec3> viewpoints;                     // where the sensor was

@@ -309,7 +309,7 @@ TEST_F(EarthquakeField, NothingToShake) {
     test::Room room(0.02);
     auto field = earthquake_field(*device, room.surroundings(), room.objects, mu, {});
     EXPECT_TRUE(field.work.empty());
-    EXPECT_FALSE(field.notes.empty());
+    EXPECT_TRUE(field.notes.empty()) << "that nothing was judged is said once for all";
 }
 
 }  // namespace
