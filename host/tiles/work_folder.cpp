@@ -79,11 +79,10 @@ WorkFolder::WorkFolder(const fs::path& folder, const std::string& manifest,
         lock_.emplace(folder_);
         take_up(manifest_text(manifest), poll);
     } catch (...) {
-        std::error_code error;
         if (remove_ && lock_)
             remove_all();
         else if (remove_)
-            fs::remove(folder_, error);  // unless another run has begun there
+            remove_empty();  // unless another run has begun there
         throw;
     }
     remove_ = folder.empty();
@@ -94,6 +93,9 @@ void WorkFolder::make(const fs::path& folder) {
     if (folder.empty()) temporary_.emplace(io::StagingFolder::temporary());
     folder_ = temporary_ ? temporary_->path() / "work" : folder;
     std::error_code error;
+    for (fs::path p = folder_.parent_path(); !p.empty() && !fs::exists(p, error);
+         p = p.parent_path())
+        ++parents_;
     if (folder_.has_parent_path()) fs::create_directories(folder_.parent_path(), error);
     if (::mkdir(folder_.c_str(), 0700) == 0) return;
     if (errno != EEXIST) io::fail(folder_, std::string("can't be made: ") + std::strerror(errno));
@@ -128,10 +130,16 @@ void WorkFolder::remove_all() noexcept {
         std::error_code error;
         for (const std::string& name : names_in(folder_))
             if (is_work_file(name)) fs::remove(folder_ / name, error);
-        fs::remove(folder_, error);
+        remove_empty();
     } catch (const std::exception&) {
         // It stays: the next run takes it up.
     }
+}
+
+void WorkFolder::remove_empty() {
+    std::error_code error;
+    fs::path at = folder_;
+    for (int i = 0; i <= parents_ && fs::remove(at, error); ++i) at = at.parent_path();
 }
 
 bool WorkFolder::has(const std::string& file) const {

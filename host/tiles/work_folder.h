@@ -41,11 +41,13 @@ class WorkFolder {
     void make(const std::filesystem::path& folder);
     void take_up(const std::string& text, const std::function<void()>& poll);
     void remove_all() noexcept;
+    void remove_empty();  // the folder, and what was made to hold it
 
     std::filesystem::path folder_;
     std::optional<io::StagingFolder> temporary_;
     std::optional<FolderLock> lock_;
     std::vector<std::string> damaged_;
+    int parents_ = 0;  // how many folders above it were made
     bool remove_ = false, taken_up_ = false;
 };
 

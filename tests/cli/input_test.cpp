@@ -68,7 +68,7 @@ TEST_F(Input, missing_or_of_no_known_kind) {
     put("scan.doc", "v 0 0 0\n");
     refused("scan.doc", {".ply"});
     put("scan.obj", "v 0 0 0\n");
-    refused("scan.obj", {"mesh"});
+    refused("scan.obj", {"1 point was found"});
     std::filesystem::create_directory(in("folder"));
     refused("folder", {"depth"});
 }
