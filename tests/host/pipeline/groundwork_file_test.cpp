@@ -20,7 +20,7 @@ TEST(GroundworkFile, HoldsAllThatObjectsAreFoundFrom) {
     options.device = device::open_device("native");
     options.cache_file = file.string();
     SmallRoom room = SmallRoom::scattered();
-    room.cloud.red.assign(room.cloud.size(), 90);
+    for (const float x : room.cloud.x) room.cloud.red.push_back(x > 1 ? 200 : 90);
     room.cloud.green.assign(room.cloud.size(), 120);
     room.cloud.blue.assign(room.cloud.size(), 60);
     std::vector<std::pair<std::string, double>> timings;
