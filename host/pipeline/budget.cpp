@@ -31,13 +31,18 @@ constexpr std::uint64_t program_bytes = std::uint64_t{64} << 20;
 constexpr const char* of_options = "of ParseOptions::max_memory_bytes";
 constexpr const char* with_options = " with ParseOptions::max_memory_bytes";
 
-// All parses that run in this process: what they may take together, and what it had before them.
+// All parses that run in this process: what they may take together, beside what it had before them.
 struct Running {
     std::mutex mutex;
     std::uint64_t parses = 0, before = 0;
     double allowed = 0;
 };
 Running running;
+
+std::uint64_t taken() {
+    const ProcessMemory memory = process_memory();
+    return memory.own + std::min(memory.of_files, program_bytes);
+}
 
 thread_local Budget* current_budget = nullptr;
 
@@ -72,7 +77,7 @@ Budget::Budget(std::string source, std::uint64_t input_bytes, const ParseOptions
         of_ = of_input < of_machine ? Of::input : Of::machine;
     }
     const std::lock_guard lock(running.mutex);
-    if (running.parses++ == 0) running.before = process_memory().own;
+    if (running.parses++ == 0) running.before = taken();
     running.allowed += static_cast<double>(bytes_);
     current_budget = this;
 }
@@ -135,15 +140,16 @@ void Budget::begin_work(const std::string& what, const std::string& mend, double
 }
 
 void Budget::look() {
-    const ProcessMemory memory = process_memory();
+    const std::uint64_t now = taken();
     double most = 0;  // that the process may have
     {
+        // Whatever a system counts as taken before, a parse may take the least.
         const std::lock_guard lock(running.mutex);
-        most = running.allowed + static_cast<double>(running.before);
+        most = static_cast<double>(running.before) +
+               std::max(running.allowed, static_cast<double>(least_bytes));
     }
     const std::string what = "in the stage \"" + stage_ + "\" " + work_;
-    most = std::max(most, static_cast<double>(least_bytes));
-    if (static_cast<double>(memory.own + std::min(memory.of_files, program_bytes)) > most)
+    if (static_cast<double>(now) > most)
         throw Error(ErrorKind::input, source_ + ": " + what + " take more than the " +
                                           io::bytes_text(bytes_) + " " + whose() + ": allow more" +
                                           (asked() ? "" : with_options) + ", or " + mend_);
