@@ -277,7 +277,7 @@ def test_a_peak_in_another_unit_is_told(points, device):
 
 def test_errors_of_options_and_devices(points):
     for option, value, words in (('tile_m', 5, '^tile_m 5: only clouds in files'), ('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
-                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes: allow '),
+                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes: allow that much'),
                                  ('disturbances', ['wind', 'wind'], '^disturbances: wind is given twice; name each once$'),
                                  ('disturbances', 'flood', '^disturbances flood: expected human, wind or')):
         with pytest.raises(topple.Error, match=words) as raised:
