@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 WIDTH, HEIGHT = 860, 500  # pixels
-LAMP = 26  # the object whose contacts and energies are drawn: a desk lamp
+LAMP_M = -0.41, -0.89, -0.22  # in the scan: the desk lamp whose contacts and energies are drawn
 
 
 def read_ply(path):
@@ -259,8 +259,10 @@ def main():
     turn = np.array(scene['manhattan_from_input'])[:3, :3]
     scan_and_primitives(scene, read_ply(os.path.join(options.parsed, 'points.ply')), turn, options.dir)
     space(scene, options.parsed, turn, options.dir)
-    graph(scene, LAMP, turn, options.dir)
-    energy(scene, LAMP, options.dir)
+    free = [o for o in scene['objects'] if not o['grounded']]
+    lamp = min(free, key=lambda o: np.linalg.norm(np.subtract(o['center_of_mass_m'], LAMP_M)))['id']
+    graph(scene, lamp, turn, options.dir)
+    energy(scene, lamp, options.dir)
     views(options.parsed, options.dir)
 
 
