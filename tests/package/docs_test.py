@@ -16,8 +16,8 @@ import sys
 import tempfile
 
 # Options of topple stand alone in code in these pages; elsewhere such code may be another program's.
-OPTIONS_ALONE = {'README.md', 'docs/output.md', 'docs/formats.md', 'docs/corrections.md', 'docs/scale.md', 'docs/glossary.md', 'docs/how-it-works.md',
-                 'docs/disturbances.md', 'docs/limits.md'}
+OPTIONS_ALONE = {'README.md', 'docs/output.md', 'docs/formats.md', 'docs/corrections.md', 'docs/scale.md', 'docs/how-it-works.md', 'docs/disturbances.md',
+                 'docs/limits.md'}
 # What those pages say of other programs: topple.formats, mpirun.
 OTHERS = {'--topic', '--unit-m', '--bind-to'}
 
@@ -153,9 +153,9 @@ def check_parameters(source):
     page, problems, told = 'docs/parameters.md', [], 0
     left = constants_of(source)
     with open(os.path.join(source, page), encoding='utf-8') as file:
-        rows = re.findall(r'^\| `((?:host|vdb)/[^`]+)` \| (`[^|]*) \|', file.read(), re.MULTILINE)
+        rows = re.findall(r'^`((?:host|vdb)/[^`]+)` \| ([^|\n]*)', file.read(), re.MULTILINE)
     for path, listed in rows:
-        for name, value in re.findall(r'`(\w+)` ([^`]*?)(?=, `|$)', listed):
+        for name, value in re.findall(r'`(\w+)=([^`]*)`', listed):
             told += 1
             known = left.get(path, {}).pop(name, None)
             if known != value:

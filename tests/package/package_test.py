@@ -94,7 +94,7 @@ class Package:
         os.makedirs(source)
         with open(os.path.join(self.a.source, 'docs/library.md'), encoding='utf-8') as file:
             blocks = dict(re.findall(r'^<!-- example: (\S+) -->\n```\w+\n(.*?)^```$', file.read(), re.M | re.S))
-        check(sorted(blocks) == ['CMakeLists.txt', 'main.cpp', 'robot.cpp'], f'docs/library.md has the example blocks {sorted(blocks)}')
+        check(sorted(blocks) == ['CMakeLists.txt', 'main.cpp'], f'docs/library.md has the example blocks {sorted(blocks)}')
         for name, text in blocks.items():
             with open(os.path.join(source, name), 'w', encoding='utf-8') as file:
                 file.write(text)
@@ -103,14 +103,6 @@ class Package:
         out = os.path.join(self.a.work, 'example-parsed')
         self.compare(run(program, self.scan, out), 'auto')
         check(os.path.exists(os.path.join(out, 'report.html')), 'the example wrote no report')
-        out = os.path.join(self.a.work, 'example-map')
-        shutil.rmtree(out + '-mujoco', ignore_errors=True)
-        printed = run(os.path.join(built, 'robot'), out)
-        print(printed)
-        for expected in (r'^3 objects$', r'^mass of object [12]: held$', r'^object [12]: .* 3\.0 kg', r'^  stands on object [12]$',
-                         r'^  an arm may touch it', r'^3 bodies in'):
-            check(re.search(expected, printed, re.M), f'the map\'s example did not print {expected}')
-        check(os.path.exists(out + '-mujoco/scene.xml') and os.path.exists(out + '/report.html'), 'the map\'s example wrote too little')
 
     def headers(self):
         self.build(os.path.join(self.a.source, 'tests/package/consumer'), 'headers-build', 'headers')
@@ -165,8 +157,16 @@ class Package:
     def examples(self):
         """docs/examples in C++."""
         source = os.path.join(self.a.source, 'tests/package/consumer')
-        program = os.path.join(self.build(source, 'examples-build', 'labels_in_place'), 'labels_in_place')
-        check(re.search(r'^[1-9]\d* objects of [1-9]\d* points$', run(program, self.scan), re.M), 'no objects were found')
+        built = self.build(source, 'examples-build', 'examples')
+        check(re.search(r'^[1-9]\d* objects of [1-9]\d* points$', run(os.path.join(built, 'labels_in_place'), self.scan), re.M), 'no objects were found')
+        out = os.path.join(self.a.work, 'example-map')
+        shutil.rmtree(out + '-mujoco', ignore_errors=True)
+        printed = run(os.path.join(built, 'robot'), out)
+        print(printed)
+        for expected in (r'^3 objects$', r'^mass of object [12]: held$', r'^object [12]: .* 3\.0 kg', r'^  stands on object [12]$',
+                         r'^  an arm may touch it', r'^3 bodies in'):
+            check(re.search(expected, printed, re.M), f'the map\'s example did not print {expected}')
+        check(os.path.exists(out + '-mujoco/scene.xml') and os.path.exists(out + '/report.html'), 'the map\'s example wrote too little')
 
     def pkg_config(self):
         """docs/examples in C, without CMake."""
