@@ -39,5 +39,5 @@ function fillGlossary() {
   for (const [key, [word, meaning]] of Object.entries(glossary)) {
     list.append(element('dt', {id: 'word-' + key, text: word, tabIndex: -1}), element('dd', {text: meaning}));
   }
-  document.getElementById('glossary').append(list, element('p', {text: 'All words, with their units, are in docs/how-it-works.md of topple.'}));
+  document.getElementById('glossary').append(list, element('p', {text: 'More words are in docs/how-it-works.md of topple.'}));
 }
