@@ -21,6 +21,13 @@ const std::map<std::string, double> size_units{
     {"KB", 1e3},     {"M", 0x1p20}, {"MiB", 0x1p20}, {"MB", 1e6},     {"G", 0x1p30},
     {"GiB", 0x1p30}, {"GB", 1e9},   {"T", 0x1p40},   {"TiB", 0x1p40}, {"TB", 1e12}};
 
+// Whether what the system counts as data is the program's alone: sanitizers have much of their own.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool data_is_ours = false;
+#else
+constexpr bool data_is_ours = true;
+#endif
+
 // "500M", "4G", "1.5GB", or a number of bytes.
 std::uint64_t parse_size(const std::string& text) {
     std::size_t used = 0;
@@ -55,7 +62,7 @@ void keep_to_budget(const std::string& input, const ParseOptions& options) {
     const std::uint64_t threads = std::thread::hardware_concurrency() + 2;
     const ProcessMemory now = process_memory();
     rlimit limit{};
-    if (now.reserved == 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+    if (!data_is_ours || now.reserved == 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
     const std::uint64_t unused = now.reserved - std::min(now.reserved, now.own);
     const std::uint64_t bytes =
         std::max(Budget::least_bytes, Budget(input, bytes_of_input(input), options).bytes());
