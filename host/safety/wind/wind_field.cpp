@@ -336,7 +336,9 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
         offer_arrows(arrows, solid, cells[o], wind, options.speed_m_s, directions);
     }
     out.samples = arrows.take();
-    if (out.samples.x.empty()) out.notes.push_back("No object of the scene stands in the wind.");
+    // That nothing was judged is said once for all.
+    if (out.samples.x.empty() && !std::ranges::all_of(objects, &RiskObject::grounded))
+        out.notes.push_back("No object of the scene stands in the wind.");
     return out;
 }
 
