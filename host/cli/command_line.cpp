@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/further_options.h"
 #include "cli/interrupt.h"
 #include "cli/print.h"
 #include "cli/unknown_option.h"
@@ -63,9 +64,9 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
         "topple tells which things in a 3D scan of a room are one solid object, what holds what "
         "up,\n"
         "and what may fall: when someone walks by, in wind, in an earthquake."};
-    // One help for all: with the options of every command.
-    app.set_help_flag();
-    app.set_help_all_flag("-h,--help", "Print this help and exit");
+    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.set_help_all_flag("--help-all", "Print it with all options and exit");
+    list_them_apart(app);
     app.set_version_flag("--version", std::string("topple ") + version);
     app.require_subcommand(1);
     app.footer(

@@ -15,6 +15,7 @@
 #include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/export_options.h"
+#include "cli/further_options.h"
 #include "cli/interrupt.h"
 #include "cli/isolate_option.h"
 #include "cli/long_run.h"
@@ -281,13 +282,37 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option("--voxel", a->voxel_m,
                    "Edge of a solid voxel in metres (default: 2 cm in rooms, finer where dense)");
     add_unit_option(app, a->options.unit_m);
-    add_isolate_option(app, a->options.isolate);
     app.add_option("--up", a->up,
                    "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
     app.add_option("--disturbance", a->disturbance,
                    "What may disturb the scene: " + joined(known_disturbances(), ", ") +
                        ", separated by commas")
         ->capture_default_str();
+    app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
+    app.add_option_function<std::string>(
+        "--pga", [a](const std::string& text) { a->pga = parse_acceleration("--pga", text); },
+        "Peak ground acceleration of the earthquake in m/s^2, or in g as in 0.3g; an\n"
+        "accelerogram is scaled to it (default: the accelerogram's own, or 3)");
+    app.add_option(
+        "--corrections", a->corrections,
+        "What is known of the room beside the scan: JSON that says what is one thing,\n"
+        "apart, fixed, not there, hollow, how heavy, and what it is called, by points in\n"
+        "the scan (docs/corrections.md)");
+    app.add_option("--title", a->output.title,
+                   "Title of the report, as the room's name (default: INPUT's name)");
+    app.add_flag("--png", a->output.pictures,
+                 "Write the report's main views as pictures, too: view-*.png");
+    app.add_flag(
+        "--glb", a->output.glb,
+        "Write the solids as meshes, too, one per object, coloured as scanned: objects.glb");
+    app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
+    add_max_memory_option(app, a->options.max_memory_bytes,
+                          "Memory to keep to: in blocks fewer are held at a time, and a scan that\n"
+                          "would need more is refused (default: 3/4 of what is free; of inputs of\n"
+                          "megabytes 2 GB a MB)");
+    app.add_flag("--quiet", a->quiet, "Print errors only");
+    further_options(app);
+    add_isolate_option(app, a->options.isolate);
     app.add_option("--walks", a->options.walks, "Walks of people that are sampled")
         ->check(whole_number)
         ->capture_default_str();
@@ -307,16 +332,9 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option("--motion-up", a->motion_up,
                    "Up in the recording, X,Y,Z (default: from head and feet)")
         ->needs(motion);
-    app.add_option("--title", a->output.title,
-                   "Title of the report, as the room's name (default: INPUT's name)");
-    app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
     app.add_option("--wind-from", a->options.wind_from_deg,
                    "Where the wind comes from, degrees clockwise from the scene's north\n"
                    "(default: from all sides)");
-    app.add_option_function<std::string>(
-        "--pga", [a](const std::string& text) { a->pga = parse_acceleration("--pga", text); },
-        "Peak ground acceleration of the earthquake in m/s^2, or in g as in 0.3g; an\n"
-        "accelerogram is scaled to it (default: the accelerogram's own, or 3)");
     CLI::Option* const record = app.add_option(
         "--accelerogram", a->accelerogram,
         "Recorded earthquake instead of made-up ones: JSON (dT, accel_data), PEER's .AT2, or\n"
@@ -340,11 +358,6 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option("--hazard", a->hazard,
                    "How often the ground shakes there: JSON (pga_g, per_year), or lines of peak\n"
                    "acceleration in g and annual rate; gives how often each object falls");
-    app.add_option(
-        "--corrections", a->corrections,
-        "What is known of the room beside the scan: JSON that says what is one thing,\n"
-        "apart, fixed, not there, hollow, how heavy, and what it is called, by points in\n"
-        "the scan (docs/corrections.md)");
     CLI::Option* const cache = app.add_option(
         "--cache", a->cache,
         "File for what does not depend on corrections and disturbances, so that the next parse\n"
@@ -370,25 +383,14 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option("--grouping-time", a->options.grouping_time_s,
                    "Seconds for the search for objects, about; where that is too few, the\n"
                    "objects depend on the machine (default: as long as it takes)");
-    app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_option(
         "--tile", a->tile_m,
         "Parse any cloud in blocks of 5 m, as those of over 4 million points are, so\n"
         "that it may be larger than memory; the blocks of a tile of this edge in metres\n"
         "are read and handed out together (default: one by one; the result is the same)");
-    add_max_memory_option(app, a->options.max_memory_bytes,
-                          "Memory to keep to: in blocks fewer are held at a time, and a scan that\n"
-                          "would need more is refused (default: 3/4 of what is free; of inputs of\n"
-                          "megabytes 2 GB a MB)");
-    app.add_flag("--png", a->output.pictures,
-                 "Write the report's main views as pictures, too: view-*.png");
-    app.add_flag(
-        "--glb", a->output.glb,
-        "Write the solids as meshes, too, one per object, coloured as scanned: objects.glb");
     app.add_flag("--octomap", a->output.octomap,
                  "Write what was seen to be free and occupied as an OctoMap, too: map.bt");
     add_export_options(app, a->exported);
-    app.add_flag("--quiet", a->quiet, "Print errors only");
     return [a] { return a->team.leads ? run(*a) : help(*a); };
 }
 

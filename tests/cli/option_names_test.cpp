@@ -88,7 +88,7 @@ TEST(OptionNames, HoldAllOptions) {
 class NamesOfInterfaces : public Program {};
 
 TEST_F(NamesOfInterfaces, AreTheirOwn) {
-    const std::string help = run({"parse", "--help"}).out;
+    const std::string help = run({"parse", "--help-all"}).out;
     const std::filesystem::path include = source / "host/include/topple";
     const std::string c = without_comments(bytes_of_file(include / "topple.h"));
     const std::string fields = body_of("topple.h", "topple_options");

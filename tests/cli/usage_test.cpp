@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include "cli/program.h"
 
 // What can be told from the command line alone, without looking into the input.
@@ -165,7 +167,7 @@ TEST_F(Usage, a_bad_hazard_curve_is_refused_before_the_parse) {
 
 TEST_F(Usage, help_names_every_command_and_option) {
     for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"--help"}, {"-h"}, {"parse", "--help"}}) {
+         {std::vector<std::string>{"--help-all"}, {"parse", "--help-all"}}) {
         const Finished help = run(arguments);
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
@@ -184,6 +186,19 @@ TEST_F(Usage, help_names_every_command_and_option) {
             EXPECT_NE(help.out.find(name), std::string::npos) << name << " in\n" << help.out;
         }
     }
+}
+
+TEST_F(Usage, help_fits_a_screen) {
+    for (const char* command : {"parse", "estimate", "generate", "evaluate", "perf"}) {
+        const Finished help = run({command, "--help"});
+        EXPECT_EQ(help.code, 0);
+        EXPECT_LE(std::ranges::count(help.out, '\n'), 50) << help.out;
+        EXPECT_NE(help.out.find("--help-all"), std::string::npos) << help.out;
+    }
+    const Finished all = run({"--help"});
+    EXPECT_LE(std::ranges::count(all.out, '\n'), 30) << all.out;
+    for (const char* word : {"parse", "generate", "devices", "--help-all", "--version", "130"})
+        EXPECT_NE(all.out.find(word), std::string::npos) << word << all.out;
 }
 
 TEST_F(Usage, version) {

@@ -4,7 +4,7 @@
 
 Every relative link and picture in README.md, CHANGELOG.md, SECURITY.md, docs and kernels/README.md leads to a file, and to a heading
 of it where it names one; every page of docs is linked from README.md. With the program TOPPLE, every option that a page gives to a command
-of topple is one that the command's --help lists, and the files that docs/disturbances.md and docs/corrections.md show are read.
+of topple is one that the command's --help-all lists, and the files that docs/disturbances.md and docs/corrections.md show are read.
 docs/parameters.md has the constants of the stages as they stand in the code, and all of them. Measured figures in the pages are those of the
 newest row of perf/results.
 """
@@ -75,14 +75,14 @@ def check_links(source):
 
 
 def options_of(program):
-    """By command, what its --help lists; under '' those of all."""
+    """By command, what its --help-all lists; under '' those of all."""
     def listed(*command):
-        done = subprocess.run([program, *command, '--help'], stdout=subprocess.PIPE, text=True, check=True, timeout=60)
+        done = subprocess.run([program, *command, '--help-all'], stdout=subprocess.PIPE, text=True, check=True, timeout=60)
         return done.stdout
 
     commands = re.findall(r'^([a-z]+)$', listed(), re.MULTILINE)
     if len(commands) < 5:
-        sys.exit(f'{program} --help lists the commands {commands}')
+        sys.exit(f'{program} --help-all lists the commands {commands}')
     found = {command: set(re.findall(r'--[a-z][\w-]*', listed(command))) for command in commands}
     found[''] = set.union(*found.values(), {'--version'})
     return found

@@ -351,7 +351,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
     KeyboardInterrupt. isolate=False: meshes, OctoMaps and OpenVDB files are read in this process, not in one of
     its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
-    are those of `topple parse --help`.
+    are those of `topple parse --help-all`.
     """
     options = _topple.Options()
     given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
