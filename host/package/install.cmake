@@ -24,7 +24,7 @@ if(TARGET topple-mujoco)
   install(TARGETS topple-mujoco RUNTIME DESTINATION ${TOPPLE_LIBEXECDIR})
 endif()
 if(TARGET topple-mpi)
-  install(TARGETS topple-mpi)
+  install(TARGETS topple-mpi RUNTIME OPTIONAL)  # ./dev demo leaves it out
 endif()
 install(TARGETS libtopple EXPORT toppleTargets FILE_SET HEADERS)
 install(EXPORT toppleTargets NAMESPACE topple:: DESTINATION ${PACKAGE_FOLDER})
