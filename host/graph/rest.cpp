@@ -239,12 +239,19 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
         if (!way.points.empty()) weigh(way.kind, outline_of(way.points), way.height, way.often);
     // Even its foot is too small: all that is above may rest on something.
     weigh(RestKind::hidden, std::move(whole), low_m, 0.3 * often_hidden);
-    if (goes_on) weigh(RestKind::near, outline_of(partly), near_height, often_partly);
+    double unseen_margin_m = 0;
+    if (goes_on) {
+        Outline more = outline_of(partly);
+        unseen_margin_m = margin_of(c, more.polygon);
+        weigh(RestKind::near, std::move(more), near_height, often_partly);
+    }
     best.probability = sum > 0 ? most / sum : 1;
     const double unseen_m = low_m - best.support_height_m;
     if (unseen_m > noise_gap * h && unseen_m > most_unseen_foot * (highest_of(c, contacts) - low_m))
         best.kind = RestKind::hidden;
     take_for_standing(c, noise_m, best);
+    if (unseen_margin_m > margin_of(c, best.support_polygon) + noise_m)
+        best.unseen_margin_m = unseen_margin_m;
     return best;
 }
 

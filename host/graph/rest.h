@@ -50,6 +50,9 @@ struct Rest {
     std::vector<std::array<double, 2>> support_polygon;
     double support_height_m = 0;
     double margin_error_m = 0;  // standard error of that
+    // How far inside of its border the centre of mass would be if its foot went on where nobody saw
+    // in, as in a leg that is hidden; 0 where that is no more than it is taken to be.
+    double unseen_margin_m = 0;
 };
 
 // The likeliest way in which a body stands: of each, how often scans miss so much of a support,

@@ -5,17 +5,19 @@
 
 #include "core/cell_columns.h"
 #include "physics/landscape.h"
+#include "physics/unseen.h"
 
 namespace topple::physics {
 
 // How far a body that tips over an edge of its support falls below the height of it, metres: to the
-// highest surface that is none of its own where it lands. 0 where the support goes on, or where
-// nothing is known of what lies there. One value for each edge of footing(), in their order; where
-// the centre of mass is outside, one for the way in which it falls. The body has a support polygon.
+// highest surface that is none of its own where it lands. 0 where the support goes on, or may do so
+// unseen, or where nothing is known of what lies there. One value for each edge of footing(), in
+// their order; where the centre of mass is outside, one for the way in which it falls. The body has
+// a support polygon.
 std::vector<double> drops_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
-                                        const Candidate& body);
+                                        const Candidate& body, const Unseen& unseen = {});
 // The primitive that it falls onto in a horizontal direction over an edge of its support, of which
-// `on_edge` is a point; -1 for other solid, or where it does not fall.
+// `on_edge` is a point, and it is known to fall; -1 for other solid.
 std::int32_t met_when_tipped(const SolidCells& cells, const CellColumns& columns,
                              const Candidate& body, const Vec3& direction, const Vec3& on_edge);
 // How far it falls over the weakest of them.

@@ -47,6 +47,11 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
     return result;
 }
 
+double tipping_barrier_J(const Candidate& body, double margin_m) {
+    const double height = std::max(body.body.center[2] - body.support_height_m, 0.0);
+    return body.body.mass_kg * gravity * (std::hypot(height, margin_m) - height);
+}
+
 double barrier_error_J(const Candidate& body, const BodyError& known, const Stability& tip,
                        const Instability& how, double margin_error_m, double friction) {
     const double weight = body.body.mass_kg * gravity;

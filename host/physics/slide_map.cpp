@@ -42,8 +42,14 @@ std::vector<std::array<std::int32_t, 2>> enclosed_columns(
 
 SlideMap::SlideMap(const SolidCells& cells, const CellColumns& columns,
                    std::span<const std::int32_t> object, std::int32_t self, const Footprint& foot,
-                   const Vec3& center, double reach_m)
-    : cells_(cells), columns_(columns), object_(object), self_(self), foot_(foot), center_(center) {
+                   const Vec3& center, double reach_m, const Unseen& unseen)
+    : cells_(cells),
+      columns_(columns),
+      object_(object),
+      self_(self),
+      foot_(foot),
+      center_(center),
+      unseen_(unseen) {
     start_i_ = static_cast<std::int32_t>(std::floor(center[0] / cells.voxel_m));
     start_j_ = static_cast<std::int32_t>(std::floor(center[1] / cells.voxel_m));
     radius_ = static_cast<std::int32_t>(std::clamp(reach_m / cells.voxel_m, 1.0, 1500.0));
@@ -129,6 +135,7 @@ const SlideMap::Ground& SlideMap::ground(std::int32_t i, std::int32_t j) {
             g.obstacle = true;
         }
     }
+    if (!g.holds && g.below > 0 && may_carry(unseen_, i, j, foot_.support)) g.below = 0;
     return g;
 }
 

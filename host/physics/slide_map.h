@@ -28,7 +28,7 @@ class SlideMap {
   public:
     SlideMap(const SolidCells& cells, const CellColumns& columns,
              std::span<const std::int32_t> object, std::int32_t self, const Footprint& foot,
-             const Vec3& center, double reach_m);
+             const Vec3& center, double reach_m, const Unseen& unseen);
 
     // Before anything is asked of the map.
     void stand(const Stance& stance);
@@ -65,6 +65,7 @@ class SlideMap {
     std::int32_t self_;
     const Footprint& foot_;
     Vec3 center_;
+    const Unseen& unseen_;
     std::int32_t start_i_, start_j_, radius_, margin_, side_;
     std::vector<Ground> ground_;                 // lookups so far
     std::vector<std::uint8_t> blocked_, falls_;  // 0 not asked yet, 1 no, 2 yes

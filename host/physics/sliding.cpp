@@ -332,7 +332,7 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
                       std::span<const std::int32_t> object, std::int32_t self,
                       const Footprint& foot, const Body& body, double friction,
                       const SlideOptions& options) {
-    SlideMap map(cells, columns, object, self, foot, body.center, longest_slide_m);
+    SlideMap map(cells, columns, object, self, foot, body.center, longest_slide_m, options.unseen);
     if (!options.stances.empty()) map.stand(options.stances[static_cast<std::size_t>(self)]);
     const double x = body.center[0] / cells.voxel_m, y = body.center[1] / cells.voxel_m;
     const Search::Way way = Search(map, x, y).run();
@@ -430,7 +430,7 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
                                          std::span<const std::int32_t> object_of_primitive,
                                          std::span<const Body> objects,
                                          std::span<const std::size_t> chosen, double friction,
-                                         double reach_m) {
+                                         double reach_m, const Unseen& unseen) {
     const std::vector<std::int32_t> object =
         object_of_cells(cells, object_of_primitive, objects.size());
     const CellColumns columns(cells);
@@ -441,7 +441,7 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
         find_support(cells, columns, object, self, {}, feet[o]);
         out.emplace_back();
         if (!feet[o].stands || !(objects[o].mass_kg > 0)) continue;
-        SlideMap map(cells, columns, object, self, feet[o], objects[o].center, reach_m);
+        SlideMap map(cells, columns, object, self, feet[o], objects[o].center, reach_m, unseen);
         out.back() = places_around(map, objects[o], reach_m, friction, cells.voxel_m);
     }
     return out;

@@ -12,6 +12,7 @@
 #include "physics/bodies.h"
 #include "physics/body_errors.h"
 #include "physics/landscape.h"
+#include "physics/unseen.h"
 
 // Position landscapes (paper, 3.1 Case II and Eq. 5): what it takes to push an object off its
 // support.
@@ -55,6 +56,7 @@ struct SlideOptions {
     std::span<const Stance> stances = {};  // by object; empty: none of any
     std::span<const std::array<double, 2>> ways = {};  // unit, horizontal: to look straight along
     ThreadPool* threads = nullptr;  // to share the objects out among; none: one by one
+    Unseen unseen{};                // of the voxels
 };
 
 // For every object, on the voxel columns of its support. The support is the level that most of the
@@ -63,7 +65,8 @@ struct SlideOptions {
 // the hull of the columns that still bear (a hole narrower than the foot is no edge). Solids at the
 // object's own height block its outline; what already reaches into its outline moves with it. An
 // edge counts where a surface at least two voxels lower is known beneath it: where the scan ends,
-// nobody knows. Ways are any-angle (lazy Theta*), so they are straight where nothing blocks them.
+// or the support may go on unseen, nobody knows. Ways are any-angle (lazy Theta*), so they are
+// straight where nothing blocks them.
 //   cells               sorted by (i, j, k)
 //   object_of_primitive -1 for none
 //   objects             mass and centre of each object; those without voxels find nothing
@@ -79,7 +82,7 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
                                          std::span<const std::int32_t> object_of_primitive,
                                          std::span<const Body> objects,
                                          std::span<const std::size_t> chosen, double friction,
-                                         double reach_m);
+                                         double reach_m, const Unseen& unseen = {});
 
 // What sliding would be if the object stood at another of its places, column a and row b of them:
 // the nearest place among them that falls, in a straight line. It may fall as soon as it has left
@@ -111,6 +114,9 @@ struct Instability {
 // where equal, if either has something to release, and tipping from a barrier of 0 only if it does;
 // without any, the barrier is that of tipping.
 Instability combine_curves(const Stability& tip, const SlideResult& slide);
+
+// Of tipping over an edge that is margin_m from the centre of mass: M g (sqrt(h^2 + m^2) - h).
+double tipping_barrier_J(const Candidate& body, double margin_m);
 
 // One standard error of that barrier, from those of the margin (how far inside of its support's
 // border the centre of mass is), of its height and of the mass, to first order, as independent

@@ -27,14 +27,16 @@ class Mover {
   public:
     Mover(const SolidScene& solids, std::span<const StableObject> objects,
           std::span<const safety::RiskObject> at_risk,
-          std::span<const safety::Disturbance> disturbances, double friction, double tolerable_J)
+          std::span<const safety::Disturbance> disturbances, double friction, double tolerable_J,
+          const physics::Unseen& unseen)
         : cells_(solids.cells()),
           objects_(objects),
           at_risk_(at_risk),
           disturbances_(disturbances),
           friction_(friction),
           tolerable_J_(tolerable_J),
-          columns_(solids.columns()) {}
+          columns_(solids.columns()),
+          unseen_(unseen) {}
 
     // The nearest places of the object that are tolerable to those: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
@@ -84,7 +86,7 @@ class Mover {
         there.body.center[0] += dx;
         there.body.center[1] += dy;
         for (auto& corner : there.support_polygon) corner = {corner[0] + dx, corner[1] + dy};
-        const auto drops = physics::drops_when_tipped_m(cells_, columns_, there);
+        const auto drops = physics::drops_when_tipped_m(cells_, columns_, there, unseen_);
         const bool falls = std::any_of(drops.begin(), drops.end(), [](double d) { return d > 0; });
         // Near an edge the drops are others than here; all that is known is that there are some. So
         // are walls: none is counted on.
@@ -113,6 +115,7 @@ class Mover {
     std::span<const safety::Disturbance> disturbances_;
     double friction_, tolerable_J_;
     const CellColumns& columns_;
+    const physics::Unseen& unseen_;
 };
 
 // Such a share of the events of a kind that has happened before would have upset it, and yet it
@@ -164,7 +167,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
                                std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
-                               double friction, double tolerable_J) {
+                               double friction, double tolerable_J, const physics::Unseen& unseen) {
     constexpr double nearly_all = 0.9;
     const SolidCells& cells = solids.cells();
     std::vector<Suggestion> out(at_risk.size());
@@ -195,8 +198,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
     if (chosen.size() > most_moved) chosen.resize(most_moved);
 
     const auto around = physics::places_of(cells, object_of_primitive, bodies, chosen, friction,
-                                           look_around_m + see_edges_m);
-    const Mover mover(solids, objects, at_risk, disturbances, friction, tolerable_J);
+                                           look_around_m + see_edges_m, unseen);
+    const Mover mover(solids, objects, at_risk, disturbances, friction, tolerable_J, unseen);
     std::vector<safety::Placement> placements;
     std::vector<double> all_J;  // the largest risk there
     for (std::size_t n = 0; n < chosen.size(); ++n) {

@@ -42,7 +42,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
                                std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
-                               double friction, double tolerable_J);
+                               double friction, double tolerable_J,
+                               const physics::Unseen& unseen = {});
 
 // Whether what is known of object o, and with it its category, is to be doubted: how it stands is
 // one of several readings of the scan, none of them likelier than not; or it stood when it was

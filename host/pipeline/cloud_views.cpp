@@ -92,6 +92,7 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
     note_unknown(sensors, out.cloud.size(), out.notes);
     std::vector<std::uint32_t> eye_of_place(sensors.places.size(), geometry::no_eye);
     if (posed) {
+        options.eyes = 1;  // what no sensor saw may hold a leg, or be a thing's shadow
         for (const std::uint32_t place : geometry::places_apart(sensors, most_sensors)) {
             eye_of_place[place] = static_cast<std::uint32_t>(options.known_eyes.size());
             options.known_eyes.push_back(sensors.places[place]);
@@ -170,6 +171,7 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
                       views_text
                 : "The cloud has no sensor poses: free space was estimated from " + views_text);
     }
+    out.by_sensors = scan || (posed && views.hidden_share <= most_hidden);
     out.frames = std::make_unique<MemoryStream>(views.intrinsics, std::move(views.frames));
 }
 

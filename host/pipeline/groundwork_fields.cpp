@@ -169,10 +169,13 @@ Groundwork read_groundwork(tiles::BinaryReader& file) {
     const std::size_t count = out.parts.model.size();
     solid_fields(file, solids, count);
     voxel_fields(file, voxels, count);
+    bool sensed = false;
+    file(sensed);
     file.expect(solids.cells.voxel_m == out.voxel_m && voxels.frame.voxel_m == out.voxel_m &&
                 voxels.frame.grid_from_input == out.parts.frame.axes);
     out.parts.solids = scene_of(std::move(solids));
     out.voxels = std::make_shared<vdb::VoxelScene>(voxels);
+    if (sensed) out.parts.sensed = out.voxels;
     store_fractions(*out.parts.solids, *out.voxels);
     return out;
 }
@@ -184,6 +187,7 @@ void write_groundwork(tiles::BinaryWriter& file, const Groundwork& ground) {
     ground_fields(file, ground);
     solid_fields(file, solids, count);
     voxel_fields(file, voxels, count);
+    file(ground.parts.sensed != nullptr);
 }
 
 }  // namespace topple

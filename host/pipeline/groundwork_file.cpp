@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes with what is written below.
-constexpr std::string_view groundwork_mark = "topple groundwork 5";
+constexpr std::string_view groundwork_mark = "topple groundwork 6";
 
 void add_text(Checksum& sum, std::string_view text) {
     const std::uint64_t size = text.size();

@@ -72,6 +72,7 @@ void note_colours(bool given, Ingested& out) {
 void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std::string& source,
                  const ParseOptions& options, Ingested& out) {
     const Intrinsics& k = out.frames->intrinsics();
+    out.by_sensors = true;
     // Before anything is made of them.
     check_camera_steps(places_of(poses), source);
     const double depth_m =
@@ -255,6 +256,7 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
         std::vector<DepthFrame> frames;
         frames.push_back(std::move(frame));
         out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
+        out.by_sensors = true;
         note_single_frame(out);
         return;
     }

@@ -56,6 +56,8 @@ struct Ingested {
     std::vector<Vec3> viewpoints;                     // where the sensor was
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
+    // Whether that is from where sensors were: what stays unseen none of them saw.
+    bool by_sensors = false;
     std::optional<Vec3> camera_up;
     bool sides_guessed = false;     // as FrameHints::sides_guessed
     std::optional<Vec3> format_up;  // as FrameHints::format_up

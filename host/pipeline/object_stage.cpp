@@ -120,7 +120,7 @@ double floor_below(const std::vector<double>& floors, double height_m) {
 }
 
 // Objects by group, the ground first.
-void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
+void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, bool sensed,
                      const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
                      ObjectStage& out) {
     const SolidCells& cells = solids.cells();
@@ -164,6 +164,7 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
             object.rest = rest.kind;
             object.rest_probability = rest.probability;
             object.margin_error_m = rest.margin_error_m;
+            if (sensed) object.unseen_margin_m = rest.unseen_margin_m;
             object.candidate.stood = rest.kind != graph::RestKind::none;
             object.candidate.support_polygon = std::move(rest.support_polygon);
             object.candidate.support_height_m = rest.support_height_m;
@@ -219,7 +220,7 @@ std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primi
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, const physics::HiddenWalls& walls,
                    std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<StableObject>& objects) {
+                   std::vector<StableObject>& objects, const physics::Unseen& unseen) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
     const std::vector<ObjectBox> boxes = object_boxes(solids, object_of_primitive, objects.size());
@@ -227,7 +228,8 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     std::vector<physics::Candidate> candidates;
     for (StableObject& o : objects) {
         if (!o.grounded && !o.candidate.support_polygon.empty())
-            o.candidate.edge_drop_m = physics::drops_when_tipped_m(cells, columns, o.candidate);
+            o.candidate.edge_drop_m =
+                physics::drops_when_tipped_m(cells, columns, o.candidate, unseen);
         candidates.push_back(o.candidate);
     }
     std::vector<physics::Stability> tipping =
@@ -259,7 +261,8 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                            {.places = true,
                             .stances = stances,
                             .ways = safety::directions(),
-                            .threads = &device.threads()});
+                            .threads = &device.threads(),
+                            .unseen = unseen});
     const std::vector<double> floors = floor_levels(solids);
     const std::vector<bool> fixed = fixed_primitives(object_of_primitive, objects);
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
@@ -276,6 +279,13 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         objects[o].barrier_error_J =
             physics::barrier_error_J(candidates[o], objects[o].body_error, tipping[o], how,
                                      objects[o].margin_error_m, friction);
+        objects[o].seen_error_J = objects[o].barrier_error_J;
+        // Its upper end is that of a foot that goes on unseen.
+        if (how.mode != "slide")
+            objects[o].barrier_error_J =
+                std::max(objects[o].barrier_error_J,
+                         physics::tipping_barrier_J(candidates[o], objects[o].unseen_margin_m) -
+                             how.barrier_J);
         objects[o].overturning =
             physics::overturning(candidates[o], objects[o].body_error, tipping[o],
                                  objects[o].box.top_m(), objects[o].margin_error_m, friction,
@@ -337,11 +347,12 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
                                      physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
-        collect_objects(*solid.solids, parts.shell.pinned, options, device.threads(), hand, out);
+        collect_objects(*solid.solids, parts.shell.pinned, solid.sensed != nullptr, options,
+                        device.threads(), hand, out);
         out.hidden_walls = find_hidden_walls(
             solid, out.object_of_primitive, fixed_primitives(out.object_of_primitive, out.objects));
         find_barriers(device, table, *solid.solids, out.hidden_walls, out.object_of_primitive,
-                      options.friction, out.objects);
+                      options.friction, out.objects, unseen_of(solid));
     });
     doubt_objects(parts.joints, hand.links(), cells, out);
     out.told = hand.tell(out.object_of_primitive, out.objects.size(), grounded_object(out));

@@ -40,12 +40,14 @@ struct StableObject {
     physics::Symmetric inertia{};
     physics::BodyError body_error;
     double barrier_error_J = 0;
+    double seen_error_J = 0;  // the same of what was seen of its foot: risk knows of no more
     Overturning overturning;
     std::shared_ptr<const physics::Toppling> toppling;  // none: nothing holds it, or it is grounded
     // How it stands (graph/rest.h); its candidate is held up in that way.
     graph::RestKind rest = graph::RestKind::seen;
     double rest_probability = 1;
-    double margin_error_m = 0;  // to which the border of its support is known
+    double margin_error_m = 0;   // to which the border of its support is known
+    double unseen_margin_m = 0;  // as of graph::Rest, where it is known what sensors saw
     // Whether what holds it up was seen well enough to say what a push does.
     bool seen_enough() const {
         return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
@@ -95,7 +97,7 @@ std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primi
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, const physics::HiddenWalls& walls,
                    std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<StableObject>& objects);
+                   std::vector<StableObject>& objects, const physics::Unseen& unseen = {});
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

@@ -62,7 +62,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         r.grounded = o.grounded || !o.seen_enough() || o.candidate.support_polygon.empty();
         r.mass_kg = o.candidate.body.mass_kg;
         r.barrier_J = o.instability.barrier_J;
-        r.barrier_error_J = o.barrier_error_J;
+        r.barrier_error_J = o.seen_error_J;
         r.mass_error_share = r.mass_kg > 0 ? o.body_error.mass_kg / r.mass_kg : 0;
         r.center_height_m = o.candidate.body.center[2] - o.candidate.support_height_m;
         r.slides = o.instability.mode == "slide" && o.sliding.found;
@@ -142,9 +142,9 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     });
     stage("risk", [&] { weigh_risks(at_risk, out); });
     stage("advice", [&] {
-        out.advice =
-            advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
-                   out.disturbances, out.risk, fields, options.friction, options.tolerable_J);
+        out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
+                            out.disturbances, out.risk, fields, options.friction,
+                            options.tolerable_J, unseen_of(parts));
         const std::vector<Fastening> fastenings = find_fastenings(parts, objects);
         const std::vector<std::int32_t> legs =
             find_legs(*parts.solids, objects.object_of_primitive, objects.objects);

@@ -79,10 +79,16 @@ class Sentence {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
         }
-        return (object_.mode == "slide" ? slides() : tips()) + piece() + several();
+        return (object_.mode == "slide" ? slides() : tips()) + foot() + piece() + several();
     }
 
   private:
+    // Which is more than what was seen of it.
+    std::string foot() const {
+        return from_.unseen_margin_m > 0 && barrier_within_error(object_)
+                   ? " Part of its foot, as a leg, may stand where nobody saw in."
+                   : "";
+    }
     // Whose figures are those of a piece.
     std::string piece() const {
         if (object_.piece_of < 0) return "";

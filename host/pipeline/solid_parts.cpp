@@ -3,6 +3,13 @@
 
 namespace topple {
 
+physics::Unseen unseen_of(const SolidParts& parts) {
+    if (!parts.sensed) return {};
+    return [&volume = *parts.sensed](std::int32_t i, std::int32_t j, std::int32_t k) {
+        return volume.state_at(i, j, k) == vdb::State::invisible;
+    };
+}
+
 SolidParts solid_parts(const GeometryStage& geometry, const VoxelStage& voxels) {
     SolidParts out;
     out.frame = geometry.frame;
@@ -18,6 +25,7 @@ SolidParts solid_parts(const GeometryStage& geometry, const VoxelStage& voxels) 
     }
     out.seams = surface_seams(geometry, voxels.number);
     out.solids = voxels.solids;
+    if (voxels.by_sensors) out.sensed = voxels.scene;
     return out;
 }
 

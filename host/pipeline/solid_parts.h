@@ -10,6 +10,7 @@
 #include "geometry/manhattan.h"
 #include "geometry/surface_samples.h"
 #include "graph/surface_seams.h"
+#include "physics/unseen.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/voxel_stage.h"
 
@@ -25,7 +26,12 @@ struct SolidParts {
     std::vector<std::uint64_t> points;   // by primitive
     graph::SurfaceSeams seams;
     std::shared_ptr<const SolidScene> solids;
+    // What sensors saw of it; null: nobody says where they were, or the scene is in blocks.
+    std::shared_ptr<const vdb::VoxelScene> sensed;
 };
+
+// Of what sensors saw.
+physics::Unseen unseen_of(const SolidParts& parts);
 
 // Of a scene in one piece.
 SolidParts solid_parts(const GeometryStage& geometry, const VoxelStage& voxels);

@@ -292,6 +292,7 @@ geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
                        SpaceCarving& carving, StageClock& stage, SolidDetail detail) {
     VoxelStage out;
+    out.by_sensors = input.by_sensors;
     const double voxel_m = carving.frame().voxel_m;
     geometry::GapPoints gaps;
     stage("voxels", [&] {

@@ -25,6 +25,7 @@ struct VoxelStage {
     // Solid of each of the geometry's primitives; -1: it is a fragment, whose voxels are solid, but
     // no primitive's. Solids keep the order of the primitives.
     std::vector<std::int32_t> number;
+    bool by_sensors = false;  // as Ingested::by_sensors
 };
 
 // A solid has at least the volume of a cube of two voxels; less is a fragment that noise left,

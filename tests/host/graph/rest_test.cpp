@@ -179,6 +179,20 @@ TEST_P(RestOf, AFootOfWhichOneSideWasSeenGoesOnWhereNobodySaw) {
     EXPECT_NEAR(out.support_height_m, 0, 1e-9);
 }
 
+// What was seen of its foot holds it, but less firmly than if it went on.
+TEST_P(RestOf, AFootThatHoldsMayGoOnWhereNobodySaw) {
+    FloorScene scene;
+    const auto thing = scene.add([](double x, double y, double z) {
+        return x > 0 && x < 0.4 && y > 0 && y < 0.6 && z < 0.5 && z > (x < 0.26 ? 0.0 : 0.2);
+    });
+    EXPECT_EQ(rest(scene, thing).unseen_margin_m, 0);
+    const Rest out = rest(scene, thing, {}, 10);
+    EXPECT_EQ(out.kind, RestKind::seen);
+    EXPECT_NEAR(bounds(out)[2], 0.26, 0.001);
+    const double above = 0.4 * 0.3, foot = 0.26 * 0.2;
+    EXPECT_NEAR(out.unseen_margin_m, (above * 0.2 + foot * 0.13) / (above + foot), 0.001);
+}
+
 // Nobody saw in below it: a box with its foot hidden stands on the floor; of what is hidden for
 // more than half of what was seen nobody knows.
 TEST_P(RestOf, AFootThatIsHiddenForLongIsNotKnown) {

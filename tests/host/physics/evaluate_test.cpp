@@ -61,6 +61,11 @@ TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
     EXPECT_EQ(std::ranges::count(bar.edge_drop_m, 0.0), 3);
     EXPECT_NEAR(bar.edge_drop_m[1], table_m, 1e-9);
     EXPECT_NEAR(drop_when_tipped_m(cells, columns, bar), table_m, 1e-9);
+    // Where nobody saw the table end it may go on.
+    const Unseen beyond = [](std::int32_t i, std::int32_t, std::int32_t k) {
+        return i >= 2 && k == -1;
+    };
+    EXPECT_EQ(drops_when_tipped_m(cells, columns, bar, beyond), std::vector<double>(4, 0.0));
     const Stability s = evaluate(*device, table, std::span(&bar, 1))[0];
     const double weight = bar.body.mass_kg * gravity, climb = std::sqrt(2) * 0.05 - 0.05;
     ASSERT_EQ(s.curve.size(), 1u);

@@ -84,6 +84,30 @@ TEST_F(Sliding, WhatReachesOverAShelfSlidesWhereItStands) {
     EXPECT_FALSE(slide_all(cells, own, bodies, friction, {.stances = stances})[2].found);
 }
 
+// Nobody saw the table's low-x edge: it may go on there, and the cube falls off another edge. A
+// strip beside an edge is what grazing rays leave.
+TEST_F(Sliding, WhatNobodySawMayCarry) {
+    const double voxel = 0.025;
+    const SolidCells cells = test::voxelise(room, {-2, -2, -0.1}, {3, 3, 1}, voxel);
+    const std::vector<double> density(3, 700), friction(3, 0.3);
+    const std::vector<std::int32_t> own{0, 1, 2};
+    const auto bodies = mass_properties(*device, cells, 3, density);
+    const auto distance_m = [&](std::int32_t wide) {
+        const Unseen unseen = [&](std::int32_t i, std::int32_t, std::int32_t k) {
+            return k == 29 && i < 0 && i >= -wide;
+        };
+        const SlideResult s = slide_all(cells, own, bodies, friction, {.unseen = unseen})[2];
+        EXPECT_TRUE(s.found);
+        return s.distance_m;
+    };
+    EXPECT_NEAR(distance_m(0), 0.2, 1e-9);
+    EXPECT_NEAR(distance_m(noise_gap - 1), 0.2, 1e-9);
+    EXPECT_NEAR(distance_m(noise_gap), 0.4, 1e-9);
+    EXPECT_NEAR(distance_m(40), 0.4, 1e-9);
+    const Unseen all = [](std::int32_t, std::int32_t, std::int32_t) { return true; };
+    EXPECT_FALSE(slide_all(cells, own, bodies, friction, {.unseen = all})[2].found);
+}
+
 TEST_F(Sliding, CubeOnATable) {
     for (const double voxel : {0.05, 0.025, 0.0125}) {
         SCOPED_TRACE(voxel);
