@@ -11,8 +11,7 @@ namespace {
 
 void make_sorted_set(std::vector<std::int32_t>& values) {
     std::ranges::sort(values);
-    const auto [first, last] = std::ranges::unique(values);
-    values.erase(first, last);
+    values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ Outline outline_of(std::vector<BorderPoint> points) {
     // Of several at one place the best known one.
     const auto at = [](const BorderPoint& p) { return std::pair(p.at, p.error_m); };
     std::ranges::sort(points, {}, at);
-    const auto rest = std::ranges::unique(points, {}, &BorderPoint::at);
-    points.erase(rest.begin(), rest.end());
+    const auto same = [](const BorderPoint& a, const BorderPoint& b) { return a.at == b.at; };
+    points.erase(std::unique(points.begin(), points.end(), same), points.end());
     std::vector<std::array<double, 2>> places;
     places.reserve(points.size());
     for (const BorderPoint& p : points) places.push_back(p.at);

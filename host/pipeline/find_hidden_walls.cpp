@@ -44,8 +44,9 @@ std::vector<std::pair<std::size_t, std::size_t>> ranges_of(const SurfaceSamples&
                                                            std::size_t primitives) {
     std::vector<std::pair<std::size_t, std::size_t>> out;
     for (std::size_t p = 0; p < primitives; ++p) {
-        const auto range = std::ranges::equal_range(s.primitive, static_cast<std::int32_t>(p));
-        out.emplace_back(range.begin() - s.primitive.begin(), range.end() - s.primitive.begin());
+        const auto [first, last] =
+            std::equal_range(s.primitive.begin(), s.primitive.end(), static_cast<std::int32_t>(p));
+        out.emplace_back(first - s.primitive.begin(), last - s.primitive.begin());
     }
     return out;
 }

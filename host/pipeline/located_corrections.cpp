@@ -90,8 +90,7 @@ std::vector<std::int32_t> parts_at(const Finder& finder, std::span<const Vec3> s
         if (!lost) lost = &spots[s];
     }
     std::ranges::sort(out);
-    const auto [first, last] = std::ranges::unique(out);
-    out.erase(first, last);
+    out.erase(std::unique(out.begin(), out.end()), out.end());
     if (lost) {
         missed.append(missed.empty() ? "found nothing within " : "; nothing within ")
             .append(io::short_number(reach_m(voxel_m)))
