@@ -120,7 +120,7 @@ void sort_cells(SolidCells& cells) {
     const auto [low_k, high_k] = range_of(cells.k);
     const geometry::CellPacking packing({0, low_j, low_k}, {0, high_j, high_k});
     std::vector<std::size_t> first(static_cast<std::size_t>(high_i - low_i) + 2, 0);
-    const auto slice = [&](std::int32_t i) { return static_cast<std::size_t>(i - low_i); };
+    const auto slice = [low = low_i](std::int32_t i) { return static_cast<std::size_t>(i - low); };
     for (const std::int32_t i : cells.i) ++first[slice(i) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<std::uint32_t> order(cells.size());
