@@ -136,33 +136,6 @@ const void* Arrays::copy(const void* from, std::size_t bytes, std::size_t alignm
 using namespace topple;
 using namespace topple::c_api;
 
-static_assert(sizeof(topple_step) == sizeof(InstabilityStep) &&
-              offsetof(topple_step, S_J) == offsetof(InstabilityStep, S_J));
-
-topple_result::topple_result(ParseResult parsed, const topple_allocator* allocator)
-    : result(std::move(parsed)), arrays(allocator) {
-    for (const Object& o : result.scene.objects) {
-        const DirectedBarrier& directed = o.barrier_by_direction;
-        objects.push_back({arrays.hand(o.primitives),
-                           reinterpret_cast<const topple_step*>(arrays.hand(o.instability)),
-                           arrays.hand(directed.height_m), arrays.hand(directed.push_J),
-                           arrays.hand(directed.blow_J), arrays.hand(directed.blow_Ns),
-                           arrays.hand(directed.direction), arrays.hand(directed.push_N),
-                           arrays.hand(directed.push_error_N), arrays.hand(o.why.edge_m),
-                           arrays.hand(o.why.stands_on)});
-        corrected.push_back(arrays.hand(o.corrected));
-    }
-    for (const AppliedCorrection& c : result.scene.corrections)
-        corrections.push_back(arrays.hand(c.objects));
-    const ScenePoints& points = result.scene.points;
-    primitive = arrays.hand(points.primitive);
-    object = arrays.hand(points.object);
-    normal[0] = arrays.hand(points.nx);
-    normal[1] = arrays.hand(points.ny);
-    normal[2] = arrays.hand(points.nz);
-    index = arrays.hand(points.index);
-}
-
 void topple_options_init(topple_options* options, size_t size) {
     if (!options || size < sizeof(size_t)) return;
     std::memset(options, 0, size);

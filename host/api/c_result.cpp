@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "api/c_result.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "api/c_support.h"
+#include "core/field_rules.h"
+#include "core/result_fields.h"
+#include "io/text.h"
 #include "safety/disturbances.h"
 #include "topple/frame_labels.h"
 #include "topple/stays.h"
@@ -15,8 +26,62 @@ using namespace topple::c_api;
 
 namespace {
 
-void copy_vector(const Vec3& from, double (&to)[3]) {
-    std::copy(from.begin(), from.end(), to);
+static_assert(sizeof(topple_step) == sizeof(InstabilityStep) &&
+              offsetof(topple_step, S_J) == offsetof(InstabilityStep, S_J));
+
+// Of lists C has the values, or how many there are.
+template <class From, class To>
+void put(Arrays& arrays, const From& from, To& to) {
+    if constexpr (std::is_array_v<To>)
+        std::ranges::copy(from, to);
+    else if constexpr (std::is_convertible_v<From, To>)
+        to = from;
+    else if constexpr (std::is_same_v<To, const char*>)
+        to = from.c_str();
+    else if constexpr (std::is_integral_v<To>)
+        to = from.size();
+    else
+        to = reinterpret_cast<To>(arrays.hand(from));
+}
+
+// All of an item, and of what is in it, that the struct has members for.
+template <class Item, class To>
+void put_fields(Arrays& arrays, const Item& item, To& to) {
+    fields(item, [&](const auto& field, const auto& value) {
+        if constexpr (Listed<std::remove_cvref_t<decltype(value)>>)
+            put_fields(arrays, value, to);
+        else
+            std::apply([&](const auto... members) { (put(arrays, value, to.*members), ...); },
+                       field.to_c);
+    });
+}
+template <class Item, class To>
+void put_all(Arrays& arrays, const std::vector<Item>& items, std::vector<To>& to) {
+    to.resize(items.size());
+    for (std::size_t n = 0; n < items.size(); ++n) put_fields(arrays, items[n], to[n]);
+}
+
+// What a field of that name holds, "mass_kg" or "fall.hits_J"; none: there is none, or no numbers.
+template <class Item>
+std::optional<std::vector<double>> numbers_of(const Item& item, std::string_view name) {
+    std::optional<std::vector<double>> found;
+    fields(item, [&](const auto& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const std::string_view own = field.name;
+        if constexpr (Listed<Value>) {
+            if (name.starts_with(own) && name.substr(own.size()).starts_with('.'))
+                found = numbers_of(value, name.substr(own.size() + 1));
+        } else if constexpr (of_numbers<Value>) {
+            if (name != own) return;
+            found.emplace();
+            // each() ends at what does not hold.
+            rules::each(value, [&](const auto& v) {
+                found->push_back(static_cast<double>(v));
+                return true;
+            });
+        }
+    });
+    return found;
 }
 
 const Scene& scene_of(const topple_result* result) {
@@ -40,175 +105,89 @@ double figure(const std::map<std::string, double>& by_disturbance, const std::st
 
 }  // namespace
 
+topple_result::topple_result(ParseResult parsed, const topple_allocator* allocator)
+    : result(std::move(parsed)), arrays(allocator) {
+    const Scene& from = result.scene;
+    put_fields(arrays, from, scene);
+    put_all(arrays, from.primitives, primitives);
+    put_all(arrays, from.objects, objects);
+    put_all(arrays, from.contacts, contacts);
+    put_all(arrays, from.supports, supports);
+    put_all(arrays, from.corrections, corrections);
+    scene.points = from.points.primitive.size();
+    primitive = arrays.hand(from.points.primitive);
+    object = arrays.hand(from.points.object);
+    normal[0] = arrays.hand(from.points.nx);
+    normal[1] = arrays.hand(from.points.ny);
+    normal[2] = arrays.hand(from.points.nz);
+    index = arrays.hand(from.points.index);
+}
+
 int topple_result_scene(const topple_result* result, topple_scene* scene, topple_status* status) {
-    return guarded(status, [&] {
-        const Scene& from = scene_of(result);
-        topple_scene to{};
-        to.source = from.source.c_str();
-        to.backend = from.backend.c_str();
-        to.device = from.device.c_str();
-        to.up_method = from.up_method.c_str();
-        to.voxel_size_m = from.voxel_size_m;
-        to.density_kg_m3 = from.density_kg_m3;
-        to.friction = from.friction;
-        copy_vector(from.up, to.up);
-        std::copy(from.manhattan_from_input.begin(), from.manhattan_from_input.end(),
-                  to.manhattan_from_input);
-        to.seed = from.seed;
-        to.points = from.points.primitive.size();
-        to.primitives = from.primitives.size();
-        to.objects = from.objects.size();
-        to.contacts = from.contacts.size();
-        to.supports = from.supports.size();
-        to.notes = from.notes.size();
-        to.corrections = from.corrections.size();
-        give(to, scene, "scene");
-    });
+    return guarded(status, [&] { give(needed(result, "result").scene, scene, "scene"); });
 }
 
 int topple_result_primitive(const topple_result* result, uint64_t index,
                             topple_primitive* primitive, topple_status* status) {
     return guarded(status, [&] {
-        const Primitive& from = item(scene_of(result).primitives, index, "primitive");
-        topple_primitive to{};
-        to.id = from.id;
-        to.object = from.object;
-        to.model = from.model.c_str();
-        to.points = from.points;
-        to.solid_voxels = from.solid_voxels;
-        to.volume_m3 = from.volume_m3;
-        to.mass_kg = from.mass_kg;
-        copy_vector(from.center_of_mass_m, to.center_of_mass_m);
-        to.name = from.name.c_str();
-        give(to, primitive, "primitive");
+        give(item(needed(result, "result").primitives, index, "primitive"), primitive, "primitive");
     });
 }
 
 int topple_result_object(const topple_result* result, uint64_t index, topple_object* object,
                          topple_status* status) {
     return guarded(status, [&] {
-        const Object& from = item(scene_of(result).objects, index, "object");
-        topple_object to{};
-        to.id = from.id;
-        to.grounded = from.grounded;
-        to.primitives = result->objects[index].primitives;
-        to.primitive_count = from.primitives.size();
-        to.mass_kg = from.mass_kg;
-        copy_vector(from.size_m, to.size_m);
-        copy_vector(from.center_of_mass_m, to.center_of_mass_m);
-        to.barrier_J = from.barrier_J;
-        to.barrier_error_J = from.barrier_error_J;
-        to.release_J = from.release_J;
-        to.mode = from.mode.c_str();
-        copy_vector(from.direction, to.direction);
-        to.instability = result->objects[index].instability;
-        to.instability_count = from.instability.size();
-        to.unsafety = from.unsafety;
-        to.agreement = from.agreement;
-        to.why = from.why.sentence.c_str();
-        to.advice = from.advice.sentence.c_str();
-        to.mass_error_kg = from.mass_error_kg;
-        copy_vector(from.center_of_mass_error_m, to.center_of_mass_error_m);
-        to.footprint_error_m = from.footprint_error_m;
-        to.mass_model = from.mass_model.c_str();
-        std::ranges::copy(from.inertia_kg_m2, to.inertia_kg_m2);
-        to.tilt_deg = from.overturning.tilt_deg;
-        to.tilt_error_deg = from.overturning.tilt_error_deg;
-        copy_vector(from.overturning.direction, to.overturning_direction);
-        to.push_N = from.overturning.push_N;
-        to.push_error_N = from.overturning.push_error_N;
-        to.slide_N = from.overturning.slide_N;
-        to.shake_g = from.overturning.shake_g;
-        to.fragility_pga_g = from.fragility.pga_g;
-        to.fragility_pga_dispersion = from.fragility.pga_dispersion;
-        to.fragility_firm_pga_g = from.fragility.firm_pga_g;
-        to.fragility_pgv_m_s = from.fragility.pgv_m_s;
-        to.fragility_pgv_dispersion = from.fragility.pgv_dispersion;
-        to.falls_per_year = from.fragility.falls_per_year;
-        to.return_years = from.fragility.return_years;
-        to.blow_height_m = result->objects[index].blow_height_m;
-        to.push_barrier_J = result->objects[index].push_barrier_J;
-        to.blow_barrier_J = result->objects[index].blow_barrier_J;
-        to.blow_heights = from.barrier_by_direction.height_m.size();
-        to.hand_push_N = from.overturning.hand_push_N;
-        to.hand_push_error_N = from.overturning.hand_push_error_N;
-        to.hand_height_m = from.overturning.hand_height_m;
-        to.gust_m_s = from.overturning.gust_m_s;
-        to.gust_error_m_s = from.overturning.gust_error_m_s;
-        copy_vector(from.fall.lands_m, to.lands_m);
-        to.hits_J = from.fall.hits_J;
-        to.people_share = from.fall.people_share;
-        to.falls = from.fall.falls;
-        to.lands_on = from.fall.lands_on;
-        to.unsafety_category = from.unsafety_category.c_str();
-        to.unsafety_certain = from.unsafety_certain;
-        to.name = from.name.c_str();
-        to.corrected = result->corrected[index];
-        to.corrected_count = from.corrected.size();
-        to.push_direction = result->objects[index].push_direction;
-        to.push_by_direction_N = result->objects[index].push_N;
-        to.push_error_by_direction_N = result->objects[index].push_error_N;
-        to.why_azimuth_deg = from.why.azimuth_deg;
-        to.why_edge_m = result->objects[index].edge_m;
-        to.why_edge_ends = from.why.edge_m.size();
-        to.why_way_m = from.why.way_m;
-        to.why_drop_m = from.why.drop_m;
-        to.stands_on = result->objects[index].stands_on;
-        to.stands_on_count = from.why.stands_on.size();
-        to.advice_kind = from.advice.kind.c_str();
-        copy_vector(from.advice.move_m, to.advice_move_m);
-        to.advice_risk_J = from.advice.risk_J;
-        to.hold_N = from.advice.hold_N;
-        to.hold_height_m = from.advice.hold_height_m;
-        to.why_lands_on = from.why.lands_on;
-        to.piece_of = from.piece_of;
-        to.piece_probability = from.piece_probability;
-        to.joint_probability = from.joint_probability;
-        std::ranges::copy(from.weakest_joint, to.weakest_joint);
-        copy_vector(from.box_middle_m, to.box_middle_m);
-        to.action = from.advice.action.c_str();
-        to.support_height_m = from.support_height_m;
-        to.center_height_m = from.center_height_m;
-        to.blow_barrier_Ns = result->objects[index].blow_barrier_Ns;
-        give(to, object, "object");
+        give(item(needed(result, "result").objects, index, "object"), object, "object");
     });
 }
 
 int topple_result_contact(const topple_result* result, uint64_t index, topple_contact* contact,
                           topple_status* status) {
     return guarded(status, [&] {
-        const Contact& from = item(scene_of(result).contacts, index, "contact");
-        topple_contact to{};
-        to.a = from.a;
-        to.b = from.b;
-        to.area_m2 = from.area_m2;
-        copy_vector(from.normal, to.normal);
-        to.relation = from.relation.c_str();
-        to.probability = from.probability;
-        give(to, contact, "contact");
+        give(item(needed(result, "result").contacts, index, "contact"), contact, "contact");
     });
 }
 
 int topple_result_support(const topple_result* result, uint64_t index, topple_support* support,
                           topple_status* status) {
     return guarded(status, [&] {
-        const Support& from = item(scene_of(result).supports, index, "support");
-        give(topple_support{sizeof(topple_support), from.supporter, from.supported, from.area_m2},
-             support, "support");
+        give(item(needed(result, "result").supports, index, "support"), support, "support");
     });
 }
 
 int topple_result_correction(const topple_result* result, uint64_t index,
                              topple_correction* correction, topple_status* status) {
     return guarded(status, [&] {
-        const AppliedCorrection& from = item(scene_of(result).corrections, index, "correction");
-        topple_correction to{};
-        to.what = to_string(from.correction.kind);
-        to.outcome = from.outcome.c_str();
-        to.held = from.held;
-        to.objects = result->corrections[index];
-        to.object_count = from.objects.size();
-        give(to, correction, "correction");
+        give(item(needed(result, "result").corrections, index, "correction"), correction,
+             "correction");
+    });
+}
+
+int topple_result_numbers(const topple_result* result, const char* of, uint64_t index,
+                          const char* field, double* values, uint64_t capacity, uint64_t* count,
+                          topple_status* status) {
+    return guarded(status, [&] {
+        needed(count, "count") = 0;
+        const Scene& scene = scene_of(result);
+        const std::string what = &needed(of, "of"), name = &needed(field, "field");
+        array(values, "values", capacity);
+        std::optional<std::vector<double>> found;
+        if (what == "scene")
+            found = numbers_of(scene, name);
+        else if (what == "primitive")
+            found = numbers_of(item(scene.primitives, index, "primitive"), name);
+        else if (what == "object")
+            found = numbers_of(item(scene.objects, index, "object"), name);
+        else if (what == "contact")
+            found = numbers_of(item(scene.contacts, index, "contact"), name);
+        else if (what == "support")
+            found = numbers_of(item(scene.supports, index, "support"), name);
+        if (!found)
+            throw Error(ErrorKind::usage, "field: no numbers " + io::in_quotes(name) + " of " +
+                                              io::in_quotes(what) +
+                                              "; docs/output.md has the names");
+        *count = found->size();
+        std::copy_n(found->begin(), std::min<std::uint64_t>(capacity, *count), values);
     });
 }
 

@@ -50,16 +50,13 @@ struct topple_result {
 
     topple::ParseResult result;
     topple::c_api::Arrays arrays;
-    struct OfObject {
-        const std::int32_t* primitives;
-        const topple_step* instability;
-        const double *blow_height_m, *push_barrier_J, *blow_barrier_J, *blow_barrier_Ns;
-        const double *push_direction, *push_N, *push_error_N, *edge_m;
-        const std::int32_t* stands_on;
-    };
-    std::vector<OfObject> objects;
-    std::vector<const std::int32_t*> corrected;                  // by object
-    std::vector<const std::int32_t*> corrections;                // their objects
+    // As C has them; their arrays are those of the above.
+    topple_scene scene{};
+    std::vector<topple_primitive> primitives;
+    std::vector<topple_object> objects;
+    std::vector<topple_contact> contacts;
+    std::vector<topple_support> supports;
+    std::vector<topple_correction> corrections;
     const std::int32_t *primitive = nullptr, *object = nullptr;  // by point
     const float* normal[3] = {nullptr, nullptr, nullptr};
     const std::uint64_t* index = nullptr;

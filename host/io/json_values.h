@@ -63,29 +63,20 @@ inline double number_of(const OrderedJson& json,
     return json.is_null() ? missing : json.get<double>();
 }
 
-inline double number_at(const OrderedJson& json, const char* key) {
-    return number_of(json.at(key));
-}
-
 inline Vec3 vector_of(const OrderedJson& json) {
     return {number_of(json.at(0)), number_of(json.at(1)), number_of(json.at(2))};
 }
 
-inline Vec3 vector_at(const OrderedJson& json, const char* key) {
-    return vector_of(json.at(key));
-}
-
-inline std::map<std::string, double> numbers_by_name_at(const OrderedJson& json, const char* key) {
+inline std::map<std::string, double> numbers_by_name_of(const OrderedJson& json) {
     std::map<std::string, double> values;
-    for (const auto& [name, value] : json.at(key).items()) values[name] = number_of(value);
+    for (const auto& [name, value] : json.items()) values[name] = number_of(value);
     return values;
 }
 
 template <std::size_t N>
-std::array<double, N> matrix_at(const OrderedJson& json, const char* key) {
+std::array<double, N> matrix_of(const OrderedJson& rows) {
     constexpr std::size_t side = N == 16 ? 4 : 3;
     static_assert(side * side == N);
-    const OrderedJson& rows = json.at(key);
     std::array<double, N> m{};
     for (std::size_t i = 0; i < N; ++i) m[i] = number_of(rows.at(i / side).at(i % side));
     return m;

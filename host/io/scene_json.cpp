@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "io/scene_json.h"
 
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "core/json.h"
+#include "core/result_fields.h"
 #include "io/check_scene.h"
 #include "io/corrections_json.h"
 #include "io/file_writer.h"
 #include "io/json_text.h"
 #include "io/json_values.h"
-#include "io/object_json.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -19,133 +25,151 @@ using Json = OrderedJson;
 
 constexpr const char* scene_schema = "topple.scene/1";
 
-Json to_json(const Primitive& p) {
-    Json json{{"id", p.id},
-              {"object", p.object},
-              {"model", p.model},
-              {"points", p.points},
-              {"solid_voxels", p.solid_voxels},
-              {"volume_m3", number(p.volume_m3)},
-              {"mass_kg", number(p.mass_kg)},
-              {"center_of_mass_m", vector(p.center_of_mass_m)}};
-    if (!p.name.empty()) json["name"] = p.name;
+// A row of blows at each height for each direction.
+Json rows(const std::vector<double>& blows, const DirectedBarrier& b) {
+    auto out = Json::array();
+    for (std::size_t n = 0; n < b.push_J.size(); ++n) {
+        auto row = Json::array();
+        for (std::size_t h = 0; h < b.height_m.size(); ++h)
+            row.push_back(number(blows[n * b.height_m.size() + h]));
+        out.push_back(std::move(row));
+    }
+    return out;
+}
+
+// A stage that ran twice counts once, with its sum.
+using Timings = decltype(Scene::timings_s);
+Json seconds_by_stage(const Timings& timings) {
+    auto json = Json::object();
+    for (const auto& [stage, seconds] : timings) {
+        const auto before = json.find(stage);
+        const double sum =
+            seconds + (before == json.end() || before->is_null() ? 0.0 : before->get<double>());
+        json[stage] = number(sum);
+    }
     return json;
 }
 
-Json to_json(const Contact& c) {
-    return {{"a", c.a},
-            {"b", c.b},
-            {"area_m2", number(c.area_m2)},
-            {"normal", vector(c.normal)},
-            {"relation", c.relation},
-            {"probability", number(c.probability)}};
+template <class Item>
+Json json_of_item(const Item& item);
+
+template <class T>
+Json json_of(const T& value) {
+    if constexpr (std::is_same_v<T, AppliedCorrection>)
+        return json_of_correction(value);
+    else if constexpr (Listed<T>)
+        return json_of_item(value);
+    else if constexpr (std::is_same_v<T, double>)
+        return number(value);
+    else if constexpr (array_size<T> == 3)
+        return vector(value);
+    else if constexpr (array_size<T> > 3)
+        return matrix(value);
+    else if constexpr (is_a<T, std::map>)
+        return numbers_by_name(value);
+    else if constexpr (std::is_same_v<T, Timings>)
+        return seconds_by_stage(value);
+    else if constexpr (is_a<T, std::vector>)
+        return list(value, json_of<typename T::value_type>);
+    else
+        return value;
 }
 
-Json to_json(const Support& s) {
-    return {{"supporter", s.supporter},
-            {"supported", s.supported},
-            {"area_m2", number(s.area_m2)},
-            {"probability", number(s.probability)}};
+template <class Item, class T>
+Json json_in(const Item&, const T& value, const Note&) {
+    return json_of(value);
+}
+Json json_in(const DirectedBarrier& b, const std::vector<double>& values, const Note& note) {
+    return note.rows ? rows(values, b) : numbers(values);
 }
 
-Primitive primitive_of(const Json& json) {
-    Primitive p;
-    p.id = json.at("id").get<std::int32_t>();
-    p.object = json.at("object").get<std::int32_t>();
-    p.model = json.at("model").get<std::string>();
-    p.points = json.at("points").get<std::uint64_t>();
-    p.solid_voxels = json.at("solid_voxels").get<std::uint64_t>();
-    p.volume_m3 = number_at(json, "volume_m3");
-    p.mass_kg = number_at(json, "mass_kg");
-    p.center_of_mass_m = vector_at(json, "center_of_mass_m");
-    if (json.contains("name")) p.name = json.at("name").get<std::string>();
-    return p;
+template <class Item>
+Json json_of_item(const Item& item) {
+    auto json = Json::object();
+    fields(item, [&](const auto& field, const auto& value) {
+        const Note& note = field.note;
+        if (note.elsewhere || (note.if_any && is_none(value))) return;
+        json[field.name] =
+            note.whole_null && is_none(value) ? Json(nullptr) : json_in(item, value, note);
+    });
+    return json;
 }
 
-Contact contact_of(const Json& json) {
-    Contact c;
-    c.a = json.at("a").get<std::int32_t>();
-    c.b = json.at("b").get<std::int32_t>();
-    c.area_m2 = number_at(json, "area_m2");
-    c.normal = vector_at(json, "normal");
-    c.relation = json.at("relation").get<std::string>();
-    c.probability = number_at(json, "probability");
-    return c;
-}
+template <class Item>
+Item item_of(const Json& json);
 
-Scene scene_of(const Json& json) {
-    Scene scene;
-    scene.source = json.at("source").get<std::string>();
-    scene.topple_version = json.at("topple_version").get<std::string>();
-    scene.backend = json.at("backend").get<std::string>();
-    scene.device = json.at("device").get<std::string>();
-    scene.seed = json.at("seed").get<std::uint64_t>();
-    scene.voxel_size_m = number_at(json, "voxel_size_m");
-    scene.up = vector_at(json, "up");
-    scene.up_method = json.at("up_method").get<std::string>();
-    scene.manhattan_found = json.at("manhattan_found").get<bool>();
-    scene.manhattan_from_input = matrix_at<16>(json, "manhattan_from_input");
-    scene.density_kg_m3 = number_at(json, "density_kg_m3");
-    scene.friction = number_at(json, "friction");
-    if (json.contains("events")) scene.events = numbers_by_name_at(json, "events");
-    for (const auto& item : json.at("primitives")) scene.primitives.push_back(primitive_of(item));
-    for (const auto& item : json.at("objects")) scene.objects.push_back(object_of(item));
-    for (const auto& item : json.at("contacts")) scene.contacts.push_back(contact_of(item));
-    for (const auto& item : json.at("supports")) {
-        scene.supports.push_back(
-            {item.at("supporter").get<std::int32_t>(), item.at("supported").get<std::int32_t>(),
-             number_at(item, "area_m2"),
-             // Scenes of before 0.2 have none.
-             item.contains("probability") ? number_at(item, "probability") : 1});
+template <class T>
+T value_of(const Json& json, const Note& note);
+
+template <class T>
+std::vector<T> values_of(const Json& json, const Note& note) {
+    if (std::is_integral_v<T> || std::is_same_v<T, std::string> || note.null == Null::refused)
+        if constexpr (!Listed<T> && !is_a<T, std::pair>) return json.get<std::vector<T>>();
+    std::vector<T> values;
+    if constexpr (is_a<T, std::pair>) {
+        for (const auto& [name, value] : json.items()) values.emplace_back(name, number_of(value));
+        return values;
+    } else {
+        Note of_each = note;
+        of_each.rows = false;
+        for (const Json& item : json)
+            if (!note.rows)
+                values.push_back(value_of<T>(item, note));
+            else
+                for (T& value : values_of<T>(item, of_each)) values.push_back(std::move(value));
+        return values;
     }
-    if (json.contains("corrections"))
-        for (const Json& item : json.at("corrections"))
-            scene.corrections.push_back(correction_of(item));
-    for (const auto& [stage, seconds] : json.at("timings_s").items()) {
-        scene.timings_s.emplace_back(stage, number_of(seconds));
+}
+
+template <class T>
+T value_of(const Json& json, const Note& note) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    if constexpr (std::is_same_v<T, AppliedCorrection>)
+        return correction_of(json);
+    else if constexpr (Listed<T>)
+        return item_of<T>(json);
+    else if constexpr (std::is_same_v<T, double>)
+        return number_of(json, note.null == Null::infinity ? HUGE_VAL : nan);
+    else if constexpr (array_size<T> == 3)
+        return vector_of(json);
+    else if constexpr (array_size<T> > 3)
+        return matrix_of<array_size<T>>(json);
+    else if constexpr (is_a<T, std::map>)
+        return numbers_by_name_of(json);
+    else if constexpr (is_a<T, std::vector>)
+        return values_of<typename T::value_type>(json, note);
+    else
+        return json.get<T>();
+}
+
+// What earlier versions did not write stays as a new item has it. Throws nlohmann's exceptions for
+// what is none.
+template <class Item>
+Item item_of(const Json& json) {
+    Item item;
+    if constexpr (std::is_same_v<Item, Object>) {  // a new one is not of unknown category
+        item.unsafety_category.clear();
+        item.unsafety_certain = false;
     }
-    for (const auto& value : json.at("swc_energy")) scene.swc_energy.push_back(number_of(value));
-    if (json.contains("offset_m")) scene.offset_m = vector_at(json, "offset_m");
-    scene.notes = json.at("notes").get<std::vector<std::string>>();
-    return scene;
+    fields<Item>([&](const auto& field) {
+        const Note& note = field.note;
+        if (note.elsewhere || (note.since && !json.contains(note.since))) return;
+        const Json& value = json.at(field.name);
+        if (note.whole_null && value.is_null()) return;
+        auto& to = item.*field.member;
+        to = value_of<std::remove_reference_t<decltype(to)>>(value, note);
+    });
+    if constexpr (std::is_same_v<Item, DirectedBarrier>)  // as many as there are of the others
+        if (!json.contains("blow_Ns"))
+            item.blow_Ns.assign(item.blow_J.size(), std::numeric_limits<double>::quiet_NaN());
+    return item;
 }
 
 }  // namespace
 
 OrderedJson scene_document(const Scene& scene) {
-    Json json = Json::object();
-    json["schema"] = scene_schema;
-    json["source"] = scene.source;
-    json["topple_version"] = scene.topple_version;
-    json["backend"] = scene.backend;
-    json["device"] = scene.device;
-    json["seed"] = scene.seed;
-    json["voxel_size_m"] = number(scene.voxel_size_m);
-    json["up"] = vector(scene.up);
-    json["up_method"] = scene.up_method;
-    json["manhattan_found"] = scene.manhattan_found;
-    json["offset_m"] = vector(scene.offset_m);
-    json["manhattan_from_input"] = matrix(scene.manhattan_from_input);
-    json["density_kg_m3"] = number(scene.density_kg_m3);
-    json["friction"] = number(scene.friction);
-    json["events"] = numbers_by_name(scene.events);
-    json["primitives"] = list(scene.primitives, [](const Primitive& p) { return to_json(p); });
-    json["objects"] = list(scene.objects, json_of_object);
-    json["contacts"] = list(scene.contacts, [](const Contact& c) { return to_json(c); });
-    json["supports"] = list(scene.supports, [](const Support& s) { return to_json(s); });
-    if (!scene.corrections.empty())
-        json["corrections"] = list(scene.corrections, json_of_correction);
-    auto timings = Json::object();
-    // A stage that ran twice counts once, with its sum.
-    for (const auto& [stage, seconds] : scene.timings_s) {
-        const auto before = timings.find(stage);
-        const double sum =
-            seconds + (before == timings.end() || before->is_null() ? 0.0 : before->get<double>());
-        timings[stage] = number(sum);
-    }
-    json["timings_s"] = std::move(timings);
-    json["swc_energy"] = numbers(scene.swc_energy);
-    json["notes"] = scene.notes;
+    Json json{{"schema", scene_schema}};
+    json.update(json_of_item(scene));
     return json;
 }
 
@@ -167,7 +191,7 @@ Scene read_scene_json(const FileName& name) {
         if (json.at("schema") != scene_schema) {
             fail(file, "its schema is not " + std::string(scene_schema));
         }
-        Scene scene = scene_of(json);
+        Scene scene = item_of<Scene>(json);
         check_scene(scene, file);
         return scene;
     } catch (const Json::exception& error) {

@@ -49,15 +49,19 @@ void bind_error(py::module_& module) {
 }
 
 void bind_devices(py::module_& module) {
-    py::class_<SharedDevice, std::shared_ptr<SharedDevice>>(module, "Device")
-        .def_property_readonly("backend",
-                               [](const SharedDevice& d) {
-                                   return device::to_string(device::describe(*d.device).backend);
-                               })
+    py::class_<SharedDevice, std::shared_ptr<SharedDevice>>(
+        module, "Device",
+        "What a parse computes on (open_device()). It serves one parse at a time.")
         .def_property_readonly(
-            "name", [](const SharedDevice& d) { return device::describe(*d.device).name; })
+            "backend",
+            [](const SharedDevice& d) {
+                return device::to_string(device::describe(*d.device).backend);
+            },
+            "str: \"native\", \"opencl\" or \"vulkan\".")
         .def_property_readonly(
-            "gpu", [](const SharedDevice& d) { return device::describe(*d.device).gpu; })
+            "name", [](const SharedDevice& d) { return device::describe(*d.device).name; }, "str.")
+        .def_property_readonly(
+            "gpu", [](const SharedDevice& d) { return device::describe(*d.device).gpu; }, "bool.")
         .def("__repr__", [](const SharedDevice& d) {
             const device::DeviceInfo& info = device::describe(*d.device);
             return std::string("<topple.Device ") + device::to_string(info.backend) + ", " +

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <cmath>
-#include <optional>
+#include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "core/python_type.h"
+#include "core/result_fields.h"
 #include "python.h"
 
 namespace topple::python {
@@ -26,14 +31,22 @@ py::array vectors(const std::vector<Vec3>& values, const py::object& owner) {
         values.empty() ? nullptr : values.front().data(), owner);
 }
 
+// A row of numbers for each item that has nothing else.
+template <class Row>
+py::array rows(const std::vector<Row>& values, const py::object& owner) {
+    constexpr auto width = std::tuple_size_v<decltype(kind<Row>.fields)>;
+    static_assert(sizeof(Row) == width * sizeof(double));
+    return py::array_t<double>({static_cast<py::ssize_t>(values.size()), py::ssize_t{width}},
+                               {py::ssize_t{sizeof(Row)}, py::ssize_t{sizeof(double)}},
+                               reinterpret_cast<const double*>(values.data()), owner);
+}
+
 // A few numbers as an array of their own.
 template <std::size_t count>
-py::array copied(const std::array<double, count>& values, std::vector<py::ssize_t> shape) {
-    return py::array_t<double>(std::move(shape), values.data());
-}
-template <class Item>
-auto vector(Vec3 Item::*member) {
-    return [member](const Item& item) { return copied(item.*member, {3}); };
+py::array copied(const std::array<double, count>& values) {
+    if (count == 3) return py::array_t<double>(count, values.data());
+    const auto side = count == 9 ? 3 : 4;
+    return py::array_t<double>({side, side}, values.data());
 }
 
 // References to the items, each of which keeps the result alive.
@@ -49,231 +62,139 @@ const Scene& scene_of(const py::object& self) {
     return self.cast<const Parsed&>().result.scene;
 }
 
-// A value of each pose, where it lies.
-template <class T>
-auto pose_array(T Landscape::Pose::*value) {
-    return [value](const py::object& self) {
-        const auto& poses = self.cast<const Landscape&>().poses;
-        return py::array_t<T>({static_cast<py::ssize_t>(poses.size())},
-                              {py::ssize_t{sizeof(Landscape::Pose)}},
-                              poses.empty() ? nullptr : &(poses.data()->*value), self);
-    };
-}
-
 // Of blows, where they lie: (directions, heights).
-auto blow_rows(std::vector<double> DirectedBarrier::*blows) {
-    return [blows](const py::object& self) {
-        const auto& from = self.cast<const DirectedBarrier&>();
-        const auto directions = static_cast<py::ssize_t>(from.push_J.size());
-        const auto heights = static_cast<py::ssize_t>(from.height_m.size());
-        const auto width = static_cast<py::ssize_t>(sizeof(double));
-        return py::array_t<double>({directions, heights}, {heights * width, width},
-                                   (from.*blows).data(), self);
-    };
+py::array blow_rows(const std::vector<double>& blows, const DirectedBarrier& of,
+                    const py::object& owner) {
+    const auto directions = static_cast<py::ssize_t>(of.push_J.size());
+    const auto heights = static_cast<py::ssize_t>(of.height_m.size());
+    const auto width = static_cast<py::ssize_t>(sizeof(double));
+    return py::array_t<double>({directions, heights}, {heights * width, width}, blows.data(),
+                               owner);
 }
 
+// The value of a field of `item`, which keeps `owner` alive where it lies in its memory.
+template <class Item, class T>
+py::object python_value(const Item& item, const T& value, const Note& note,
+                        const py::object& owner) {
+    if (note.or_none && is_none(value)) return py::none();
+    if constexpr (Listed<T>) {
+        return py::cast(&value, py::return_value_policy::reference_internal, owner);
+    } else if constexpr (array_size<T> > 2) {
+        return copied(value);
+    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+        if constexpr (std::is_same_v<Item, DirectedBarrier>)
+            if (note.rows) return blow_rows(value, item, owner);
+        return borrowed(value, owner);
+    } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {
+        return vectors(value, owner);
+    } else if constexpr (std::is_same_v<T, decltype(Scene::timings_s)>) {
+        py::dict out;
+        for (const auto& [name, seconds] : value) out[py::str(name)] = seconds;
+        return out;
+    } else if constexpr (is_a<T, std::vector>) {
+        if constexpr (!Listed<typename T::value_type>)
+            return py::cast(value);
+        else if constexpr (kind<typename T::value_type>.name == nullptr)
+            return rows(value, owner);
+        else
+            return items(value, owner);
+    } else {
+        return py::cast(value);
+    }
+}
+
+// How columns hold a field; "": they don't. What is in an item has its kind's name.
+template <class T>
+const char* column() {
+    if constexpr (Listed<T>)
+        return kind<T>.name;
+    else if constexpr (std::is_same_v<T, bool>)
+        return "bool";
+    else if constexpr (std::is_integral_v<T>)
+        return sizeof(T) == 4 ? "int32" : "uint64";
+    else if constexpr (std::is_same_v<T, double>)
+        return "float64";
+    else if constexpr (std::is_convertible_v<T, std::string>)
+        return "object";
+    else if constexpr (std::is_same_v<T, Vec3>)
+        return "vector";
+    else if constexpr (is_a<T, std::map>)
+        return "by_disturbance";
+    else if constexpr (std::is_same_v<T, std::vector<std::int32_t>>)
+        return "ids";
+    return "";
+}
+
+// The class of a kind of item, which `item_of` finds in what Python has.
+template <class Item, class Class, class ItemOf>
+void bind_fields(py::module_& module, Class& bound, const ItemOf& item_of) {
+    py::dict columns;
+    const auto property = [&](const auto& field) {
+        using Value =
+            std::remove_cvref_t<decltype(std::invoke(field.member, std::declval<const Item&>()))>;
+        const char* name = field.note.python ? field.note.python : field.name;
+        bound.def_property_readonly(
+            name,
+            [field, item_of](const py::object& self) {
+                const Item& item = item_of(self);
+                return python_value(item, std::invoke(field.member, item), field.note, self);
+            },
+            python_words<Value>(field.words, field.note).c_str());
+        if (const std::string how = column<Value>(); !how.empty()) columns[name] = how;
+    };
+    fields<Item>(property);
+    std::apply([&](const auto&... each) { (property(each), ...); }, shortcuts<Item>);
+    module.attr("COLUMNS")[kind<Item>.name] = columns;
+}
+
+template <class Item, class... Extra>
+auto bind_item(py::module_& module, const Extra&... extra) {
+    py::class_<Item> bound(module, kind<Item>.name, kind<Item>.words, extra...);
+    bind_fields<Item>(module, bound, [](const py::object& self) -> const Item& {
+        return self.cast<const Item&>();
+    });
+    return bound;
+}
+
+// Of all poses a field each, where they lie.
 void bind_landscape(py::module_& module) {
-    py::class_<Landscape>(module, "Landscape")
-        .def_readonly("now", &Landscape::now)
-        .def_property_readonly(
-            "up",
-            [](const py::object& self) {
+    auto bound = bind_item<Landscape>(module);
+    fields<Landscape::Pose>([&](const auto& field) {
+        bound.def_property_readonly(
+            field.name,
+            [field](const py::object& self) -> py::object {
+                using Pose = Landscape::Pose;
                 const auto& poses = self.cast<const Landscape&>().poses;
-                return py::array_t<double>(
-                    {static_cast<py::ssize_t>(poses.size()), py::ssize_t{3}},
-                    {py::ssize_t{sizeof(Landscape::Pose)}, py::ssize_t{sizeof(double)}},
-                    poses.empty() ? nullptr : poses.data()->up.data(), self);
-            })
-        .def_property_readonly("energy_J", pose_array(&Landscape::Pose::energy_J))
-        .def_property_readonly("joins_at_J", pose_array(&Landscape::Pose::joins_at_J))
-        .def_property_readonly("joins", pose_array(&Landscape::Pose::joins))
-        .def_property_readonly("probability", pose_array(&Landscape::Pose::probability));
+                const auto count = static_cast<py::ssize_t>(poses.size());
+                const auto* first = poses.empty() ? nullptr : &(poses.data()->*field.member);
+                if constexpr (std::is_same_v<decltype(first), const Vec3*>)
+                    return py::array_t<double>(
+                        {count, py::ssize_t{3}},
+                        {py::ssize_t{sizeof(Pose)}, py::ssize_t{sizeof(double)}},
+                        first ? first->data() : nullptr, self);
+                else
+                    return py::array_t<std::remove_cvref_t<decltype(*first)>>(
+                        {count}, {py::ssize_t{sizeof(Pose)}}, first, self);
+            },
+            (std::string("by pose: ") + field.words).c_str());
+    });
 }
 
 void bind_items(py::module_& module) {
-    py::class_<Primitive>(module, "Primitive")
-        .def_readonly("id", &Primitive::id)
-        .def_readonly("object", &Primitive::object)
-        .def_readonly("model", &Primitive::model)
-        .def_readonly("points", &Primitive::points)
-        .def_readonly("solid_voxels", &Primitive::solid_voxels)
-        .def_readonly("volume_m3", &Primitive::volume_m3)
-        .def_readonly("mass_kg", &Primitive::mass_kg)
-        .def_property_readonly("center_of_mass_m", vector(&Primitive::center_of_mass_m))
-        .def_readonly("name", &Primitive::name);
-    py::class_<Overturning>(module, "Overturning")
-        .def_readonly("tilt_deg", &Overturning::tilt_deg)
-        .def_readonly("tilt_error_deg", &Overturning::tilt_error_deg)
-        .def_property_readonly("direction", vector(&Overturning::direction))
-        .def_readonly("push_N", &Overturning::push_N)
-        .def_readonly("push_error_N", &Overturning::push_error_N)
-        .def_readonly("slide_N", &Overturning::slide_N)
-        .def_readonly("shake_g", &Overturning::shake_g)
-        .def_readonly("hand_push_N", &Overturning::hand_push_N)
-        .def_readonly("hand_push_error_N", &Overturning::hand_push_error_N)
-        .def_readonly("hand_height_m", &Overturning::hand_height_m)
-        .def_readonly("gust_m_s", &Overturning::gust_m_s)
-        .def_readonly("gust_error_m_s", &Overturning::gust_error_m_s);
-    py::class_<DirectedBarrier>(module, "DirectedBarrier")
-        .def_property_readonly("height_m",
-                               [](const py::object& self) {
-                                   return borrowed(self.cast<const DirectedBarrier&>().height_m,
-                                                   self);
-                               })
-        .def_property_readonly("push_J",
-                               [](const py::object& self) {
-                                   return borrowed(self.cast<const DirectedBarrier&>().push_J,
-                                                   self);
-                               })
-        .def_property_readonly("blow_Ns", blow_rows(&DirectedBarrier::blow_Ns))
-        .def_property_readonly("blow_J", blow_rows(&DirectedBarrier::blow_J))
-        .def_property_readonly("direction",
-                               [](const py::object& self) {
-                                   return vectors(self.cast<const DirectedBarrier&>().direction,
-                                                  self);
-                               })
-        .def_property_readonly("push_N",
-                               [](const py::object& self) {
-                                   return borrowed(self.cast<const DirectedBarrier&>().push_N,
-                                                   self);
-                               })
-        .def_property_readonly("push_error_N", [](const py::object& self) {
-            return borrowed(self.cast<const DirectedBarrier&>().push_error_N, self);
-        });
-    py::class_<Why>(module, "Why")
-        .def_readonly("azimuth_deg", &Why::azimuth_deg)
-        .def_property_readonly(
-            "edge_m",
-            [](const py::object& self) { return vectors(self.cast<const Why&>().edge_m, self); })
-        .def_readonly("W_J", &Why::W_J)
-        .def_readonly("S_J", &Why::S_J)
-        .def_readonly("way_m", &Why::way_m)
-        .def_readonly("drop_m", &Why::drop_m)
-        .def_readonly("lands_on", &Why::lands_on)
-        .def_readonly("stands_on", &Why::stands_on)
-        .def_readonly("sentence", &Why::sentence);
-    py::class_<Advice>(module, "Advice")
-        .def_readonly("kind", &Advice::kind)
-        .def_property_readonly("move_m", vector(&Advice::move_m))
-        .def_readonly("risk_J", &Advice::risk_J)
-        .def_readonly("hold_N", &Advice::hold_N)
-        .def_readonly("hold_height_m", &Advice::hold_height_m)
-        .def_readonly("sentence", &Advice::sentence)
-        .def_readonly("action", &Advice::action);
-    py::class_<Fragility>(module, "Fragility")
-        .def_readonly("pga_g", &Fragility::pga_g)
-        .def_readonly("pga_dispersion", &Fragility::pga_dispersion)
-        .def_readonly("firm_pga_g", &Fragility::firm_pga_g)
-        .def_readonly("pgv_m_s", &Fragility::pgv_m_s)
-        .def_readonly("pgv_dispersion", &Fragility::pgv_dispersion)
-        .def_property_readonly(
-            "counted",
-            [](const py::object& self) {
-                const auto& steps = self.cast<const Fragility&>().counted;
-                return py::array_t<double>(
-                    {static_cast<py::ssize_t>(steps.size()), py::ssize_t{2}},
-                    {py::ssize_t{sizeof(Fragility::Step)}, py::ssize_t{sizeof(double)}},
-                    reinterpret_cast<const double*>(steps.data()), self);
-            })
-        .def_readonly("falls_per_year", &Fragility::falls_per_year)
-        .def_readonly("return_years", &Fragility::return_years);
-    py::class_<Fall>(module, "Fall")
-        .def_readonly("falls", &Fall::falls)
-        .def_property_readonly("lands_m", vector(&Fall::lands_m))
-        .def_readonly("drop_m", &Fall::drop_m)
-        .def_readonly("lands_on", &Fall::lands_on)
-        .def_readonly("leans_on", &Fall::leans_on)
-        .def_readonly("takes_along", &Fall::takes_along)
-        .def_readonly("hits_J", &Fall::hits_J)
-        .def_property_readonly("people_share", [](const Fall& fall) -> std::optional<double> {
-            if (std::isnan(fall.people_share)) return std::nullopt;
-            return fall.people_share;
-        });
+    module.attr("COLUMNS") = py::dict();
+    bind_item<Primitive>(module);
+    bind_item<Overturning>(module);
+    bind_item<DirectedBarrier>(module);
+    bind_item<Why>(module);
+    bind_item<Advice>(module);
+    bind_item<Fragility>(module);
+    bind_item<Fall>(module);
     bind_landscape(module);
-    py::class_<Object>(module, "Object")
-        .def_readonly("id", &Object::id)
-        .def_readonly("primitives", &Object::primitives)
-        .def_readonly("grounded", &Object::grounded)
-        .def_readonly("agreement", &Object::agreement)
-        .def_readonly("mass_kg", &Object::mass_kg)
-        .def_property_readonly("center_of_mass_m", vector(&Object::center_of_mass_m))
-        .def_readonly("support_height_m", &Object::support_height_m)
-        .def_readonly("center_height_m", &Object::center_height_m)
-        .def_property_readonly("size_m", vector(&Object::size_m))
-        .def_property_readonly("box_middle_m", vector(&Object::box_middle_m))
-        .def_readonly("piece_of", &Object::piece_of)
-        .def_readonly("piece_probability", &Object::piece_probability)
-        .def_readonly("joint_probability", &Object::joint_probability)
-        .def_readonly("weakest_joint", &Object::weakest_joint)
-        .def_readonly("barrier_J", &Object::barrier_J)
-        .def_readonly("barrier_error_J", &Object::barrier_error_J)
-        .def_readonly("mass_error_kg", &Object::mass_error_kg)
-        .def_property_readonly("center_of_mass_error_m", vector(&Object::center_of_mass_error_m))
-        .def_readonly("footprint_error_m", &Object::footprint_error_m)
-        .def_readonly("mass_model", &Object::mass_model)
-        .def_property_readonly("inertia_kg_m2",
-                               [](const Object& o) {
-                                   return copied(o.inertia_kg_m2, {3, 3});
-                               })
-        .def_readonly("release_J", &Object::release_J)
-        .def_readonly("overturning", &Object::overturning)
-        .def_readonly("fragility", &Object::fragility)
-        .def_readonly("barrier_by_direction", &Object::barrier_by_direction)
-        .def_readonly("landscape", &Object::landscape)
-        .def_property_readonly("drop_m", [](const Object& o) { return o.why.drop_m; })
-        .def_readonly("mode", &Object::mode)
-        .def_property_readonly("direction", vector(&Object::direction))
-        .def_readonly("risk_J", &Object::risk_J)
-        .def_readonly("risk_spread_J", &Object::risk_spread_J)
-        .def_readonly("risk_error_J", &Object::risk_error_J)
-        .def_readonly("fall_chance", &Object::fall_chance)
-        .def_readonly("unsafety", &Object::unsafety)
-        .def_property_readonly("unsafety_category",
-                               [](const Object& o) -> std::optional<std::string> {
-                                   if (o.unsafety_category.empty()) return std::nullopt;
-                                   return o.unsafety_category;
-                               })
-        .def_readonly("unsafety_certain", &Object::unsafety_certain)
-        .def_readonly("seen_enough", &Object::seen_enough)
-        .def_readonly("rests_by", &Object::rests_by)
-        .def_readonly("rest_probability", &Object::rest_probability)
-        .def_property_readonly(
-            "instability",
-            [](const py::object& self) {
-                const auto& curve = self.cast<const Object&>().instability;
-                return py::array_t<double>(
-                    {static_cast<py::ssize_t>(curve.size()), py::ssize_t{2}},
-                    {py::ssize_t{sizeof(InstabilityStep)}, py::ssize_t{sizeof(double)}},
-                    reinterpret_cast<const double*>(curve.data()), self);
-            })
-        .def_property_readonly("why", [](const Object& o) { return o.why.sentence; })
-        .def_readonly("why_figures", &Object::why)
-        .def_readonly("fall", &Object::fall)
-        .def_property_readonly("stands_on", [](const Object& o) { return o.why.stands_on; })
-        .def_property_readonly("advice", [](const Object& o) { return o.advice.sentence; })
-        .def_property_readonly("action", [](const Object& o) { return o.advice.action; })
-        .def_readonly("advice_figures", &Object::advice)
-        .def_readonly("name", &Object::name)
-        .def_readonly("corrected", &Object::corrected);
-    py::class_<Contact>(module, "Contact")
-        .def_readonly("a", &Contact::a)
-        .def_readonly("b", &Contact::b)
-        .def_readonly("area_m2", &Contact::area_m2)
-        .def_property_readonly("normal", vector(&Contact::normal))
-        .def_readonly("relation", &Contact::relation)
-        .def_readonly("probability", &Contact::probability);
+    bind_item<Object>(module);
+    bind_item<Contact>(module);
     // Python gives these the names of the objects that they are about.
-    py::class_<Support>(module, "Support", py::dynamic_attr())
-        .def_readonly("supporter", &Support::supporter)
-        .def_readonly("supported", &Support::supported)
-        .def_readonly("area_m2", &Support::area_m2)
-        .def_readonly("probability", &Support::probability);
-    py::class_<AppliedCorrection>(module, "AppliedCorrection", py::dynamic_attr())
-        .def_property_readonly(
-            "do", [](const AppliedCorrection& c) { return to_string(c.correction.kind); })
-        .def_readonly("held", &AppliedCorrection::held)
-        .def_readonly("outcome", &AppliedCorrection::outcome)
-        .def_readonly("objects", &AppliedCorrection::objects);
+    bind_item<Support>(module, py::dynamic_attr());
+    bind_item<AppliedCorrection>(module, py::dynamic_attr());
 }
 
 template <class Member>
@@ -294,7 +215,7 @@ py::dict solid(const py::object& self) {
     return out;
 }
 
-py::dict fields(const py::object& self) {
+py::dict disturbance_fields(const py::object& self) {
     py::dict out;
     for (const auto& [name, f] : scene_of(self).fields) {
         py::dict field;
@@ -314,68 +235,49 @@ py::dict fields(const py::object& self) {
 
 void bind_result(py::module_& module) {
     bind_items(module);
-    const auto scene = [](auto member) {
-        return [member](const Parsed& p) { return p.result.scene.*member; };
-    };
-    const auto vector_of = [](Vec3 Scene::*member) {
-        return [member](const Parsed& p) { return copied(p.result.scene.*member, {3}); };
-    };
-    py::class_<Parsed, std::shared_ptr<Parsed>>(module, "Parsed")
-        .def_property_readonly("source", scene(&Scene::source))
-        .def_property_readonly("backend", scene(&Scene::backend))
-        .def_property_readonly("device", scene(&Scene::device))
-        .def_property_readonly("seed", scene(&Scene::seed))
-        .def_property_readonly("voxel_size_m", scene(&Scene::voxel_size_m))
-        .def_property_readonly("offset_m", vector_of(&Scene::offset_m))
-        .def_property_readonly("up", vector_of(&Scene::up))
-        .def_property_readonly("up_method", scene(&Scene::up_method))
-        .def_property_readonly("manhattan_from_input",
-                               [](const Parsed& p) {
-                                   return copied(p.result.scene.manhattan_from_input, {4, 4});
-                               })
-        .def_property_readonly("density_kg_m3", scene(&Scene::density_kg_m3))
-        .def_property_readonly("friction", scene(&Scene::friction))
-        .def_property_readonly("notes", scene(&Scene::notes))
-        .def_property_readonly("timings_s",
-                               [](const Parsed& p) {
-                                   py::dict out;
-                                   for (const auto& [name, s] : p.result.scene.timings_s)
-                                       out[py::str(name)] = s;
-                                   return out;
-                               })
-        .def_property_readonly("in_blocks",
-                               [](const Parsed& p) { return p.result.tiled != nullptr; })
-        .def_property_readonly("events", scene(&Scene::events))
+    py::class_<Parsed, std::shared_ptr<Parsed>> bound(module, "Parsed");
+    bind_fields<Scene>(module, bound, scene_of);
+    bound
         .def_property_readonly(
-            "objects", [](const py::object& self) { return items(scene_of(self).objects, self); })
-        .def_property_readonly(
-            "primitives",
-            [](const py::object& self) { return items(scene_of(self).primitives, self); })
-        .def_property_readonly(
-            "contacts", [](const py::object& self) { return items(scene_of(self).contacts, self); })
-        .def_property_readonly(
-            "supports", [](const py::object& self) { return items(scene_of(self).supports, self); })
-        .def_property_readonly(
-            "corrections",
-            [](const py::object& self) { return items(scene_of(self).corrections, self); })
+            "in_blocks", [](const Parsed& p) { return p.result.tiled != nullptr; },
+            "bool: a cloud was parsed in blocks (docs/scale.md), and the arrays over its points "
+            "are of a sample of them.")
         .def_property_readonly("x", point_array(&ScenePoints::x))
         .def_property_readonly("y", point_array(&ScenePoints::y))
         .def_property_readonly("z", point_array(&ScenePoints::z))
         .def_property_readonly("nx", point_array(&ScenePoints::nx))
         .def_property_readonly("ny", point_array(&ScenePoints::ny))
         .def_property_readonly("nz", point_array(&ScenePoints::nz))
-        .def_property_readonly("point_primitive", point_array(&ScenePoints::primitive))
-        .def_property_readonly("point_object", point_array(&ScenePoints::object))
-        .def_property_readonly("point_region", point_array(&ScenePoints::region))
-        .def_property_readonly("point_index", point_array(&ScenePoints::index))
-        .def_property_readonly("image_shape",
-                               [](const Parsed& p) -> py::object {
-                                   if (p.result.image_height == 0) return py::none();
-                                   return py::make_tuple(p.result.image_height,
-                                                         p.result.image_width);
-                               })
-        .def_property_readonly("solid", solid)
-        .def_property_readonly("fields", fields);
+        .def_property_readonly("point_primitive", point_array(&ScenePoints::primitive),
+                               "(N,) int32: the primitive of each point that is finite, -1: none.")
+        .def_property_readonly(
+            "point_object", point_array(&ScenePoints::object),
+            "(N,) int32: the object of each point that is finite, -1: none. Where points of the "
+            "input were left out, point_index says which of the input's these are.")
+        .def_property_readonly(
+            "point_region", point_array(&ScenePoints::region),
+            "(N,) int32: the smooth piece of surface of each point that is finite, -1: none.")
+        .def_property_readonly("point_index", point_array(&ScenePoints::index),
+                               "uint64: of arrays, and organised clouds in files, with points that "
+                               "are not finite, the places in them of the N others, ascending; "
+                               "empty where all are finite, and of other files.")
+        .def_property_readonly(
+            "image_shape",
+            [](const Parsed& p) -> py::object {
+                if (p.result.image_height == 0) return py::none();
+                return py::make_tuple(p.result.image_height, p.result.image_width);
+            },
+            "(height, width) of the depth image that an organised .pcd is, whose pixels are its "
+            "places, row by row; None: it is none.")
+        .def_property_readonly("solid", solid,
+                               "dict of arrays over the solid voxels: \"x\", \"y\", \"z\", their "
+                               "centres in metres, float32; \"primitive\", \"object\", int32; "
+                               "\"state\", uint8, 0: seen surface, 1: completed.")
+        .def_property_readonly(
+            "fields", disturbance_fields,
+            "dict by disturbance, of dicts of float32 arrays: \"x\", \"y\", \"z\" in metres; "
+            "\"vx\", \"vy\", \"vz\", mean direction times strength (m/s; m/s^2 for earthquakes); "
+            "\"density\", visits per event, or exposure in 0 to 1.");
 }
 
 }  // namespace topple::python

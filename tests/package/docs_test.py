@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The pages for readers hold together: docs_test.py SOURCE [TOPPLE].
+"""The pages for readers hold together: docs_test.py SOURCE [TOPPLE FIELDS].
 
 Every relative link and picture in README.md, CHANGELOG.md, SECURITY.md, docs and kernels/README.md leads to a file, and to a heading
 of it where it names one; every page of docs is linked from README.md. With the program TOPPLE, every option that a page gives to a command
 of topple is one that the command's --help-all lists, and the files that docs/disturbances.md and docs/corrections.md show are read.
 docs/parameters.md has the constants of the stages as they stand in the code, and all of them. Measured figures in the pages are those of the
-newest row of perf/results.
+newest row of perf/results. docs/output.md has the fields that FIELDS, the program result_fields, tells of.
 """
 import glob
 import os
@@ -166,16 +166,19 @@ def check_parameters(source):
     return problems
 
 
-def check_figures(source):
-    done = subprocess.run([sys.executable, os.path.join(source, 'perf', 'quote'), '--check', source], stderr=subprocess.PIPE, text=True, timeout=60)
+def check_made(source, script, *arguments):
+    """What a script writes into pages is there."""
+    done = subprocess.run([sys.executable, os.path.join(source, *script), '--check', *arguments, source], stderr=subprocess.PIPE, text=True,
+                          timeout=60)
     return done.stderr.splitlines()
 
 
 def main():
     source = sys.argv[1]
-    problems = check_links(source) + check_parameters(source) + check_figures(source)
+    problems = check_links(source) + check_parameters(source) + check_made(source, ('perf', 'quote'))
     if len(sys.argv) > 2:
         problems += check_options(source, sys.argv[2]) + check_examples(source, sys.argv[2])
+        problems += check_made(source, ('docs', 'fields'), sys.argv[3])
     sys.exit('\n'.join(problems) if problems else 0)
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "parses/c_calls.h"
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -22,11 +23,11 @@ class Caller : public Arguments {
         using Call = void (Caller::*)();
         // Each as often as it stands here.
         static constexpr Call calls[] = {
-            &Caller::parse,       &Caller::get_scene, &Caller::get_items, &Caller::get_items,
-            &Caller::get_items,   &Caller::risks,     &Caller::arrays,    &Caller::stays,
-            &Caller::label,       &Caller::write,     &Caller::handles,   &Caller::two_threads,
-            &Caller::one_stage,   &Caller::one_stage, &Caller::one_stage, &Caller::one_stage,
-            &Caller::coordinates, &Caller::one_stage,
+            &Caller::parse,       &Caller::get_scene,   &Caller::get_items, &Caller::get_items,
+            &Caller::get_items,   &Caller::risks,       &Caller::numbers,   &Caller::arrays,
+            &Caller::stays,       &Caller::label,       &Caller::write,     &Caller::handles,
+            &Caller::two_threads, &Caller::one_stage,   &Caller::one_stage, &Caller::one_stage,
+            &Caller::one_stage,   &Caller::coordinates, &Caller::one_stage,
         };
         (this->*calls[random_.below(std::size(calls))])();
     }
@@ -141,6 +142,18 @@ class Caller : public Arguments {
         check("topple_result_risk_error",
               topple_result_risk_error(result(), index(), name, or_null(&a), or_null(&b),
                                        status_or_null()));
+    }
+
+    void numbers() {
+        const char* const names[] = {"object", "support", "scene", "body", nullptr};
+        const char* const fields[] = {
+            "id", "fall.lands_m", "barrier_by_direction.blow_J", "up", "fall.", ".", nullptr};
+        std::array<double, 4> values{};
+        std::uint64_t count = 0;
+        check("topple_result_numbers",
+              topple_result_numbers(result(), names[random_.below(5)], index(),
+                                    fields[random_.below(7)], or_null(values.data()),
+                                    random_.below(5), or_null(&count), status_or_null()));
     }
 
     void stays() {

@@ -29,6 +29,9 @@ def test_columns_have_what_the_objects_have(result):
         assert np.isnan(table['fall_people_share'][o.id])
         assert table['stands_on'][o.id] == o.stands_on and table['fall_takes_along'][o.id] == o.fall.takes_along
     assert not any('human' in name for name in table)
+    listed = topple._topple.COLUMNS['Object']
+    assert {name for name, how in listed.items() if how in ('float64', 'int32', 'bool', 'vector')} - {'drop_m'} <= set(table)
+    assert np.array_equal(table['overturning_direction'][1], result.objects[1].overturning.direction)
 
 
 @pytest.mark.parametrize('what', ['primitives', 'contacts', 'supports'])

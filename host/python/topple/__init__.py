@@ -34,7 +34,6 @@ from .rerun_viewer import to_rerun
 __all__ = ['Advice', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'RemovalOrder', 'Result',
            'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
-_described.items()
 _shown.items()
 for _kind in _snapshot.ITEMS:  # of a live result: a plain item that stands alone comes back
     copyreg.pickle(_kind, _snapshot.reduced)

@@ -5,42 +5,40 @@ import math
 
 import numpy as np
 
+from . import _topple
 from ._arrays import usage
 from ._shown import figure
 
-_OVERTURNING = ('tilt_deg', 'tilt_error_deg', 'push_N', 'push_error_N', 'slide_N', 'shake_g', 'hand_push_N', 'hand_push_error_N',
-                'hand_height_m', 'gust_m_s', 'gust_error_m_s')
-_FRAGILITY = ('pga_g', 'pga_dispersion', 'firm_pga_g', 'pgv_m_s', 'pgv_dispersion', 'falls_per_year', 'return_years')
-_FALL = ('falls', 'hits_J', 'lands_on', 'lands_m', 'leans_on', 'takes_along')
-_WHY = ('azimuth_deg', 'W_J', 'S_J', 'way_m', 'drop_m', 'lands_on')
-_ADVICE = ('kind', 'move_m', 'risk_J', 'hold_N', 'hold_height_m')
-_BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
-_ITEMS = {
-    'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m',
-                'support_height_m', 'center_height_m', 'size_m',
-                'box_middle_m', 'piece_of', 'piece_probability', 'joint_probability', 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
-                'unsafety_category', 'unsafety_certain', 'seen_enough', 'stands_on', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice', 'action'),
-    'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m', 'name'),
-    'contacts': ('a', 'b', 'area_m2', 'normal', 'relation', 'probability'),
-    'supports': ('supporter', 'supported', 'area_m2', 'probability'),
-}
-_LISTS = ('stands_on', 'fall_takes_along')  # of ids
-_TEXT = ('advice_kind', 'name', 'mass_model', 'rests_by', 'mode', 'unsafety_category', 'why', 'advice', 'action', 'model', 'relation')
-_TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'supporter': np.int32, 'supported': np.int32,
-          'piece_of': np.int32, 'fall_lands_on': np.int32, 'why_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool, 'seen_enough': bool,
-          'fall_falls': bool, 'fall_leans_on': np.int32, **{name: object for name in _TEXT + _LISTS}}
-_VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'box_middle_m', 'direction', 'normal', 'fall_lands_m', 'why_edge_start_m', 'why_edge_end_m',
-            'advice_move_m')
+_ITEMS = {'objects': 'Object', 'primitives': 'Primitive', 'contacts': 'Contact', 'supports': 'Support'}
+# What an object's parts have that stands beside them, too, and what is no figure of it.
+_LEFT_OUT = ('drop_m', 'why_stands_on', 'why_sentence', 'advice_sentence', 'advice_action', 'landscape_now')
 
 
-def _column(name, values):
-    if _TYPES.get(name) is object:  # sentences and lists of any length, None where there is none
+def _column(values, of):
+    if of in ('object', 'ids'):  # sentences and lists of any length, None where there is none
         column = np.empty(len(values), object)
         for row, value in enumerate(values):
-            column[row] = list(value) if name in _LISTS else value
+            column[row] = list(value) if of == 'ids' else value
         return column
-    column = np.array(values, _TYPES.get(name, np.float64))
-    return column.reshape(-1, 3) if name in _VECTORS else column
+    if of == 'vector':
+        return np.array(values, np.float64).reshape(-1, 3)
+    return np.array([math.nan if value is None else value for value in values], of)
+
+
+def _of_items(kind, items, stem=''):
+    """What the items have, and their parts with a name before theirs."""
+    columns, later = {}, {}
+    for name, of in _topple.COLUMNS[kind].items():
+        values = [getattr(item, name) for item in items]
+        if of in _topple.COLUMNS:
+            later.update(_of_items(of, values, stem + name.removesuffix('_figures') + '_'))
+        elif of == 'by_disturbance':
+            for disturbance in sorted(set().union(*values)):
+                named, unit = (name[:-2], '_J') if name.endswith('_J') else (name, '')
+                later[f'{stem}{named}_{disturbance}{unit}'] = _column([value.get(disturbance, math.nan) for value in values], 'float64')
+        elif stem + name not in _LEFT_OUT:
+            columns[stem + name] = _column(values, of)
+    return {**columns, **later}
 
 
 def _pushes(result):
@@ -72,22 +70,15 @@ def columns(result, what):
     if not isinstance(what, str) or what not in {**_ITEMS, **_BY_DIRECTION}:
         raise usage(f'what: expected {", ".join([*_ITEMS, *_BY_DIRECTION])}, not {what!r}')
     if what in _BY_DIRECTION:
-        return {name: _column(name, values) for name, values in _BY_DIRECTION[what](result).items()}
+        types = {'object': 'int32', 'direction': 'vector'}
+        return {name: _column(values, types.get(name, 'float64')) for name, values in _BY_DIRECTION[what](result).items()}
     items = getattr(result, what)
-    table = {name: [getattr(item, name) for item in items] for name in _ITEMS[what]}
+    table = _of_items(_ITEMS[what], items)
     if what == 'objects':
-        for part, names in (('overturning', _OVERTURNING), ('fragility', _FRAGILITY), ('fall', _FALL), ('why_figures', _WHY),
-                            ('advice_figures', _ADVICE)):
-            parts, stem = [getattr(o, part) for o in items], part.removesuffix('_figures')
-            table.update({f'{stem}_{name}': [getattr(p, name) for p in parts] for name in names})
         ends = [np.asarray(o.why_figures.edge_m) if len(o.why_figures.edge_m) else np.full((2, 3), math.nan) for o in items]
-        table['why_edge_start_m'], table['why_edge_end_m'] = [e[0] for e in ends], [e[1] for e in ends]
-        table['fall_people_share'] = [math.nan if o.fall.people_share is None else o.fall.people_share for o in items]
-        for name in _BY_DISTURBANCE:
-            for disturbance in sorted({d for o in items for d in getattr(o, name)}):
-                stem, unit = (name[:-2], '_J') if name.endswith('_J') else (name, '')
-                table[f'{stem}_{disturbance}{unit}'] = [getattr(o, name).get(disturbance, math.nan) for o in items]
-    return {name: _column(name, values) for name, values in table.items()}
+        for n, end in enumerate(('start', 'end')):
+            table[f'why_edge_{end}_m'] = _column([e[n] for e in ends], 'vector')
+    return table
 
 
 def dataframe(result, what):

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/api/c_api.h"
@@ -53,6 +54,50 @@ TEST_F(CApi, TakesCorrections) {
     topple_result_release(result);
     EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_INPUT);
     EXPECT_NE(std::string(status.message).find("schema"), std::string::npos) << status.message;
+}
+
+// Names are those of scene.json, of what is nested with a dot.
+TEST_F(CApi, GivesNumbersByTheirNames) {
+    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
+    topple_object crate{};
+    crate.size = sizeof(crate);
+    ASSERT_EQ(topple_result_object(result, 1, &crate, nullptr), TOPPLE_OK);
+    std::vector<double> values(100);
+    std::uint64_t count = 0;
+    const auto code = [&](const char* of, std::uint64_t index, const char* field) {
+        return topple_result_numbers(result, of, index, field, values.data(), values.size(), &count,
+                                     &status);
+    };
+    ASSERT_EQ(code("object", 1, "mass_kg"), TOPPLE_OK) << status.message;
+    EXPECT_EQ(count, 1u);
+    EXPECT_EQ(values[0], crate.mass_kg);
+    ASSERT_EQ(code("object", 1, "overturning.direction"), TOPPLE_OK);
+    EXPECT_EQ(count, 3u);
+    EXPECT_EQ(values[1], crate.overturning_direction[1]);
+    ASSERT_EQ(code("object", 1, "why.stands_on"), TOPPLE_OK);
+    EXPECT_EQ(count, crate.stands_on_count);
+    EXPECT_EQ(values[0], crate.stands_on[0]);
+    ASSERT_EQ(code("object", 1, "seen_enough"), TOPPLE_OK) << "no struct has it";
+    EXPECT_EQ(values[0], 1);
+    ASSERT_EQ(code("support", 0, "probability"), TOPPLE_OK) << "nor this";
+    EXPECT_TRUE(values[0] > 0 && values[0] <= 1);
+    ASSERT_EQ(code("scene", 0, "manhattan_from_input"), TOPPLE_OK);
+    EXPECT_EQ(count, 16u);
+    values.assign(2, 7);
+    ASSERT_EQ(
+        topple_result_numbers(result, "object", 1, "size_m", values.data(), 1, &count, nullptr),
+        TOPPLE_OK);
+    EXPECT_EQ(count, 3u);
+    EXPECT_TRUE(values[0] == crate.size_m[0] && values[1] == 7) << "no more than there is room for";
+    for (const auto& [of, field] : {std::pair{"object", "mode"},
+                                    {"object", "mass"},
+                                    {"object", "fall."},
+                                    {"body", "mass_kg"}}) {
+        EXPECT_EQ(code(of, 1, field), TOPPLE_ERROR_USAGE) << of << " " << field;
+        EXPECT_NE(std::string(status.message).find(field), std::string::npos) << status.message;
+    }
+    EXPECT_EQ(code("object", 99, "mass_kg"), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(code(nullptr, 0, "mass_kg"), TOPPLE_ERROR_USAGE);
 }
 
 TEST_F(CApi, SaysWhatMayBeTouched) {
