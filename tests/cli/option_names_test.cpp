@@ -92,7 +92,7 @@ TEST_F(NamesOfInterfaces, AreTheirOwn) {
     const std::filesystem::path include = source / "host/include/topple";
     const std::string c = without_comments(bytes_of_file(include / "topple.h"));
     const std::string fields = body_of("topple.h", "topple_options");
-    const std::string stubs = bytes_of_file(source / "host/python/topple/__init__.pyi");
+    const std::string stubs = bytes_of_file(source / "host/python/topple/__init__.pyi.in");
     std::string python;  // arguments
     for (const char* function : {"def parse(", "def export(", "def open_device("}) {
         const std::size_t from = stubs.find(function);
