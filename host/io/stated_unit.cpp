@@ -68,9 +68,14 @@ std::optional<double> metres_of_name(std::string_view name) {
     return std::nullopt;
 }
 
+// Whether all of them lie within; `at` may be any number that a file states.
+bool lies_in(std::string_view bytes, std::uint64_t at, std::uint64_t count) {
+    return at <= bytes.size() && count <= bytes.size() - at;
+}
+
 template <class T>
 T value_at(std::string_view bytes, std::uint64_t at) {
-    return at + sizeof(T) <= bytes.size()
+    return lies_in(bytes, at, sizeof(T))
                ? load_as<T>(bytes.data() + at, std::endian::native == std::endian::big)
                : T{};
 }
@@ -85,7 +90,7 @@ struct LasSystem {
 void look_at_records(std::string_view bytes, std::uint64_t at, std::uint64_t count, bool extended,
                      LasSystem& out) {
     const std::uint64_t head = extended ? 60 : 54;
-    for (std::uint64_t n = 0; n < count && at + head <= bytes.size(); ++n) {
+    for (std::uint64_t n = 0; n < count && lies_in(bytes, at, head); ++n) {
         const auto id = value_at<std::uint16_t>(bytes, at + 18);
         const std::uint64_t length = extended ? value_at<std::uint64_t>(bytes, at + 20)
                                               : value_at<std::uint16_t>(bytes, at + 20);
