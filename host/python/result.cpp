@@ -44,9 +44,9 @@ py::array rows(const std::vector<Row>& values, const py::object& owner) {
 // A few numbers as an array of their own.
 template <std::size_t count>
 py::array copied(const std::array<double, count>& values) {
-    if (count == 3) return py::array_t<double>(count, values.data());
-    const auto side = count == 9 ? 3 : 4;
-    return py::array_t<double>({side, side}, values.data());
+    std::vector<py::ssize_t> shape{py::ssize_t{count}};
+    if (count > 3) shape.assign(2, count == 9 ? 3 : 4);
+    return py::array_t<double>(std::move(shape), values.data());
 }
 
 // References to the items, each of which keeps the result alive.
