@@ -15,7 +15,7 @@ class Listing : public CLI::Formatter {
   public:
     std::string make_help(const CLI::App* app, std::string name,
                           CLI::AppFormatMode mode) const override {
-        all_ = mode == CLI::AppFormatMode::All;
+        all_ = mode != CLI::AppFormatMode::Normal;  // Sub: below the list of all commands
         return CLI::Formatter::make_help(app, std::move(name), mode);
     }
     std::string make_group(std::string group, bool is_positional,

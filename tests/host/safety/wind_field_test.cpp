@@ -225,11 +225,12 @@ TEST_F(WindField, OneWindComesFromWhereItIsSaidTo) {
 
 TEST_F(WindField, NothingInTheWind) {
     test::Room room(0.02);
-    EXPECT_FALSE(wind_field(*device, room.surroundings(), room.objects, {}).notes.empty());
+    const auto empty = wind_field(*device, room.surroundings(), room.objects, {});
+    EXPECT_TRUE(empty.notes.empty()) << "that nothing was judged is said once for all";
     room.floor(0, 1, 0, 1);
     const auto field = wind_field(*device, room.surroundings(), room.objects, {});
     EXPECT_TRUE(field.work[0].empty());
-    EXPECT_FALSE(field.notes.empty());
+    EXPECT_TRUE(field.notes.empty());
     WindOptions bad;
     bad.speed_m_s = -1;
     EXPECT_THROW(wind_field(*device, room.surroundings(), room.objects, bad), Error);
