@@ -150,7 +150,9 @@ def scans_of(args, folder):
         for name, (asked, options) in GENERATED.items():
             scan = folder / (name + '.ply' if name == 'building' else name)
             cloud = scan / 'cloud.ply' if name.endswith(('sparse', 'laser', 'cloud')) else scan
-            scans[name] = ([args.programs[0], 'generate', scan, '--seed', '7', *asked], cloud, exports + options)
+            # What is parsed in blocks can't be exported.
+            scans[name] = ([args.programs[0], 'generate', scan, '--seed', '7', *asked], cloud,
+                           options if '--tile' in options else exports + options)
         # Maps of a room, as topple writes them.
         scans['octomap-of-room'] = (None, folder / 'maps/map.bt', [])
         scans['volume-of-room'] = (None, folder / 'maps/volume.vdb', [])
