@@ -68,10 +68,11 @@ StagingFolder::StagingFolder(const fs::path& where, int parents) {
     remove_abandoned(where);
     do {
         path_ = (error ? where : whole) / random_name();
+        const fs::path lock_file = path_ / staging_lock;  // before there is a folder to leave
         // First noted, then made: a signal may come between.
         slot_ = add_pending(path_, parents);
         if (::mkdir(path_.c_str(), 0700) == 0) {
-            lock();
+            lock(lock_file);
             return;
         }
         const int reason = errno;
@@ -82,9 +83,9 @@ StagingFolder::StagingFolder(const fs::path& where, int parents) {
                     "; choose another place for the output");
 }
 
-void StagingFolder::lock() {
+void StagingFolder::lock(const fs::path& file) {
     const int flags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    lock_ = Descriptor(::open((path_ / staging_lock).c_str(), flags, 0600));
+    lock_ = Descriptor(::open(file.c_str(), flags, 0600));
     // Where the file system has no locks, nobody takes it for abandoned, either.
     if (lock_.get() >= 0 && (::flock(lock_.get(), LOCK_EX) == 0 || errno != EINTR) &&
         ::write(lock_.get(), mark.data(), mark.size()) == static_cast<ssize_t>(mark.size()))

@@ -29,7 +29,7 @@ class StagingFolder {
     const std::filesystem::path& path() const { return path_; }
 
   private:
-    void lock();
+    void lock(const std::filesystem::path& file);
 
     std::filesystem::path path_;
     Descriptor lock_;

@@ -160,11 +160,12 @@ class Kind:
         return code == 1
 
 
-def spread(calls, runs):
-    """Numbers from 1 to calls, all or `runs` of them evenly."""
-    if not runs or runs >= calls:
-        return range(1, calls + 1)
-    return sorted({1 + (2 * n + 1) * calls // (2 * runs) for n in range(runs)})
+def spread(first, calls, runs):
+    """Numbers from first to calls, all or `runs` of them evenly."""
+    span = max(calls - first + 1, 0)
+    if not runs or runs >= span:
+        return range(first, calls + 1)
+    return sorted({first + (2 * n + 1) * span // (2 * runs) for n in range(runs)})
 
 
 def main():
@@ -174,6 +175,7 @@ def main():
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
     parser.add_argument("--faults", nargs="+", choices=["fork", "memory", *DISK_FAULTS], default=["fork", "memory", *DISK_FAULTS])
     parser.add_argument("--runs", type=int, default=0, help="of each kind and fault (default: all)")
+    parser.add_argument("--first", type=int, default=1, help="of the calls that may fail")
     parser.add_argument("--every", type=int, default=1, help="of the fault fork: every so manyth allocation")
     parser.add_argument("--lasting", action="store_true", help="all allocations after the one that fails do so, too")
     args = parser.parse_args()
@@ -216,7 +218,7 @@ def main():
                     if calls == 0:
                         bad = 1
                         print("  %s %s: no such call: this tries nothing" % (name, fault))
-                    for n in spread(calls, args.runs):
+                    for n in spread(args.first, calls, args.runs):
                         runs += 1
                         try:
                             refused += kind.try_fault("%s:%d%s" % (fault, n, "+" if args.lasting and fault == "memory" else ""), folder / "work")
