@@ -3,10 +3,10 @@
 
 #include <utility>
 
-#include "pipeline/object_stage.h"
-#include "pipeline/safety_stage.h"
-#include "pipeline/stage_clock.h"
-#include "pipeline/voxel_stage.h"
+#include "device/stage_clock.h"
+#include "objects/object_stage.h"
+#include "safety/safety_stage.h"
+#include "solids/voxel_stage.h"
 
 namespace topple::perf {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <utility>
 
-#include "pipeline/stage_clock.h"
+#include "device/stage_clock.h"
 #include "scenes/furnished_room.h"
 #include "vdb/completion.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "perf/measure.h"
-#include "pipeline/geometry_stage.h"
-#include "pipeline/ingest.h"
+#include "points/ingest.h"
 #include "scenes/depth_camera.h"
+#include "solids/geometry_stage.h"
 #include "vdb/voxel_scene.h"
 
 // Whole stages, host and kernels together, on one generated room.

@@ -12,8 +12,8 @@
 
 #include "core/room_measures.h"
 #include "io/mapped_file.h"
-#include "io/volume_checks.h"
 #include "topple/error.h"
+#include "vdb/volume_checks.h"
 
 namespace topple::vdb {
 namespace {

@@ -7,12 +7,12 @@
 
 #include "api/arrays.h"
 #include "core/room_measures.h"
-#include "geometry/sensor_places.h"
 #include "geometry/surfels.h"
 #include "io/text.h"
-#include "pipeline/caller_points.h"
-#include "pipeline/scale_checks.h"
-#include "pipeline/voxel_size.h"
+#include "points/caller_points.h"
+#include "points/scale_checks.h"
+#include "points/sensor_places.h"
+#include "points/voxel_size.h"
 #include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "io/acceleration_units.h"
 #include "io/text.h"
+#include "safety/earthquake/acceleration_units.h"
 #include "topple/error.h"
 
 namespace topple::cli {

@@ -5,8 +5,8 @@
 
 #include "cli/print.h"
 #include "cli/urgency.h"
-#include "io/scene_json.h"
 #include "io/text.h"
+#include "result/scene_json.h"
 #include "safety/largest_risk.h"
 #include "topple/error.h"
 

@@ -11,10 +11,10 @@
 #include "cli/print.h"
 #include "cli/unit_option.h"
 #include "core/json.h"
-#include "io/read_cloud.h"
 #include "io/text.h"
-#include "pipeline/budget.h"
-#include "pipeline/estimate.h"
+#include "points/budget.h"
+#include "points/formats/read_cloud.h"
+#include "scale/estimate.h"
 #include "topple/device.h"
 #include "topple/option_names.h"
 

@@ -8,11 +8,11 @@
 #include "cli/commands.h"
 #include "cli/landscape_picture.h"
 #include "cli/print.h"
-#include "io/landscapes_json.h"
 #include "io/output_folder.h"
 #include "io/replace_file.h"
-#include "io/scene_json.h"
 #include "io/text.h"
+#include "result/landscapes_json.h"
+#include "result/scene_json.h"
 #include "topple/error.h"
 
 namespace topple::cli {

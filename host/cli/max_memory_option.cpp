@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "core/process_memory.h"
-#include "pipeline/budget.h"
+#include "points/budget.h"
 #include "topple/error.h"
 
 namespace topple::cli {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/acceleration_units.h"
 #include "io/text.h"
+#include "safety/earthquake/acceleration_units.h"
 
 namespace topple::cli {
 namespace {

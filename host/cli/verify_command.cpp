@@ -12,12 +12,12 @@
 #include "cli/progress.h"
 #include "io/output_folder.h"
 #include "io/replace_file.h"
-#include "io/scene_json.h"
 #include "io/staging_folder.h"
 #include "io/text.h"
 #include "mujoco/settle_apart.h"
 #include "mujoco/verdict.h"
 #include "report/verified.h"
+#include "result/scene_json.h"
 #include "topple/export.h"
 
 namespace topple::cli {

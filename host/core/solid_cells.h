@@ -20,4 +20,8 @@ struct SolidCells {
     std::size_t size() const { return i.size(); }
 };
 
+// A solid has at least the volume of a cube of two voxels; less is a fragment that noise left,
+// and too little to tell how it stands.
+inline constexpr std::uint64_t least_voxels = 8;
+
 }  // namespace topple

@@ -13,9 +13,9 @@
 #include "graph/group_energy.h"
 #include "graph/joint_bias.h"
 #include "graph/stable_objects.h"
-#include "pipeline/ingest.h"
-#include "pipeline/solid_stage.h"
+#include "points/ingest.h"
 #include "scenes/temporary_folder.h"
+#include "solids/solid_stage.h"
 
 namespace topple::evaluation {
 namespace {

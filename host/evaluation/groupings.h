@@ -8,7 +8,7 @@
 
 #include "evaluation/joint_classifier.h"
 #include "evaluation/room.h"
-#include "pipeline/object_stage.h"
+#include "objects/object_stage.h"
 
 // Table 3 of the paper: joints and supports found by three ways of grouping the same primitives.
 namespace topple::evaluation {

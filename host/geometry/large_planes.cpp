@@ -9,9 +9,8 @@ namespace topple::geometry {
 namespace {
 
 // Two neighbouring slabs, of so many cells each, with this share of the surface hold such a plane.
-constexpr double large_share = 0.05, slab_cells = 3;
-constexpr double near_degrees = 10;  // of normals from the plane's
-constexpr std::size_t beside = 2;    // slabs from a plane in which noise may lie
+constexpr double plane_share = 0.05, slab_cells = 3;
+constexpr std::size_t beside = 2;  // slabs from a plane in which noise may lie
 // With less of the surface than that clear of a plane, nothing lies before it or behind it.
 constexpr double least_clear_share = 0.03;
 
@@ -51,7 +50,7 @@ class Slabs {
             const double pair = across_[b] + across_[b + 1];
             const bool highest = (b == 0 || across_[b - 1] + across_[b] < pair) &&
                                  (b + 2 >= all_.size() || across_[b + 1] + across_[b + 2] <= pair);
-            if (pair < large_share * normals_.total) continue;
+            if (pair < plane_share * normals_.total) continue;
             large[b] = large[b + 1] = true;
             if (!highest) continue;
             const double faces = (facing_across_[b] + facing_across_[b + 1]) / pair;

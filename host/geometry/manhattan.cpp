@@ -17,8 +17,6 @@ namespace {
 constexpr unsigned cluster_count = 12;
 // Enough normals to find an axis to a hundredth of a degree.
 constexpr std::size_t most_normals = 60'000;
-// Normals this near to an axis count for it.
-constexpr double near_degrees = 10;
 // Directions spread evenly over the sphere leave 1 - cos(10 degrees) = 1.5 % near each axis. An
 // axis of the scene must hold twice that, and all three a quarter of the surface.
 constexpr double least_axis_share = 0.03, least_total_share = 0.25;

@@ -9,6 +9,9 @@
 
 namespace topple::geometry {
 
+// Normals this near to an axis count for it.
+inline constexpr double near_degrees = 10;
+
 // The defined normals of a set of surfels with a weight each: about the area that a surfel stands
 // for, 0..1, less where its neighbourhood is rougher than most (edges, clutter).
 struct WeightedNormals {

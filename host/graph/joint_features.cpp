@@ -41,7 +41,7 @@ class Rows {
   public:
     Rows(const geometry::SurfaceSamples& samples, const geometry::PrimitiveShapes& shapes,
          const ContactGraph& contacts, std::span<const physics::Body> bodies,
-         const SurfaceSeams& seams, std::span<const float> shell, ThreadPool& threads)
+         const geometry::SurfaceSeams& seams, std::span<const float> shell, ThreadPool& threads)
         : samples_(samples),
           shapes_(shapes),
           contacts_(contacts),
@@ -110,7 +110,7 @@ class Rows {
     const geometry::PrimitiveShapes& shapes_;
     const ContactGraph& contacts_;
     std::span<const physics::Body> bodies_;
-    const SurfaceSeams& seams_;
+    const geometry::SurfaceSeams& seams_;
     std::span<const float> shell_;
     ThreadPool& threads_;
     std::vector<Border> borders_;
@@ -359,8 +359,9 @@ std::span<const std::string_view> joint_feature_names() {
 
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
-                          std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                          std::span<const float> shell, ThreadPool& threads) {
+                          std::span<const physics::Body> bodies,
+                          const geometry::SurfaceSeams& seams, std::span<const float> shell,
+                          ThreadPool& threads) {
     return Rows(samples, shapes, contacts, bodies, seams, shell, threads).table();
 }
 

@@ -10,8 +10,8 @@
 #include "core/thread_pool.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
+#include "geometry/surface_seams.h"
 #include "graph/contact_graph.h"
-#include "graph/surface_seams.h"
 #include "physics/bodies.h"
 
 namespace topple::graph {
@@ -31,7 +31,8 @@ struct JointTable {
 // shell: by primitive, the probability that it is the room's.
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
-                          std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                          std::span<const float> shell, ThreadPool& threads);
+                          std::span<const physics::Body> bodies,
+                          const geometry::SurfaceSeams& seams, std::span<const float> shell,
+                          ThreadPool& threads);
 
 }  // namespace topple::graph

@@ -9,7 +9,7 @@ namespace topple::graph {
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
                                const ContactGraph& contacts, std::span<const physics::Body> bodies,
-                               const SurfaceSeams& seams, std::span<const float> shell,
+                               const geometry::SurfaceSeams& seams, std::span<const float> shell,
                                ThreadPool& threads) {
     const JointTable table =
         joint_features(samples, shapes, contacts, bodies, seams, shell, threads);

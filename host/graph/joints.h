@@ -8,8 +8,8 @@
 #include "core/thread_pool.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
+#include "geometry/surface_seams.h"
 #include "graph/contact_graph.h"
-#include "graph/surface_seams.h"
 #include "physics/bodies.h"
 
 namespace topple::graph {
@@ -25,7 +25,7 @@ struct Joint {
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
                                const ContactGraph& contacts, std::span<const physics::Body> bodies,
-                               const SurfaceSeams& seams, std::span<const float> shell,
+                               const geometry::SurfaceSeams& seams, std::span<const float> shell,
                                ThreadPool& threads);
 
 }  // namespace topple::graph

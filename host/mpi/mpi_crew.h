@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/task_list.h"
+#include "scale/task_list.h"
 #include "topple/crew.h"
 #include "topple/error.h"
 

@@ -1,7 +1,8 @@
 # libtopple: what host/include/topple declares and all that it takes, as one library from the objects of
 # the folders' own. Its users see topple::topple, installed or by add_subdirectory (docs/architecture.md).
-set(PARTS topple_api topple_child topple_core topple_device topple_export topple_fitted topple_geometry topple_graph topple_io topple_kernels topple_physics topple_pipeline
-          topple_reader topple_report topple_safety topple_solids topple_tiles topple_vdb)
+set(PARTS topple_api topple_child topple_core topple_device topple_export topple_fitted topple_formats topple_geometry topple_graph
+          topple_io topple_kernels topple_objects topple_physics topple_pipeline topple_points topple_reader topple_report topple_result
+          topple_safety topple_scale topple_solids topple_vdb)
 foreach(ISA IN ITEMS baseline avx2 avx512)
   if(TARGET topple_kernels_${ISA})
     list(APPEND PARTS topple_kernels_${ISA})

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/cell_columns.h"
+#include "core/unseen.h"
 #include "physics/landscape.h"
-#include "physics/unseen.h"
 
 namespace topple::physics {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "core/unseen.h"
 #include "physics/bodies.h"
 #include "physics/body_errors.h"
 #include "physics/landscape.h"
-#include "physics/unseen.h"
 
 // Position landscapes (paper, 3.1 Case II and Eq. 5): what it takes to push an object off its
 // support.

@@ -3,13 +3,13 @@
 #include <system_error>
 
 #include "core/field_rules.h"
-#include "io/check_scene.h"
-#include "io/landscapes_json.h"
 #include "io/output_folder.h"
-#include "io/read_result_ply.h"
-#include "io/scene_json.h"
-#include "io/solids_file.h"
 #include "io/text.h"
+#include "result/check_scene.h"
+#include "result/landscapes_json.h"
+#include "result/read_result_ply.h"
+#include "result/scene_json.h"
+#include "result/solids_file.h"
 #include "topple/parse.h"
 
 namespace topple {

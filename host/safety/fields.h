@@ -13,8 +13,8 @@
 
 #include "device/device.h"
 #include "physics/bodies.h"
+#include "physics/directions.h"
 #include "physics/toppling.h"
-#include "safety/directions.h"
 #include "safety/fall_zone.h"
 #include "topple/input.h"
 #include "topple/motion.h"

@@ -12,7 +12,7 @@ meshes, maps and volumes of an earlier parse; with a voxel and tiles by chance; 
 end the shares within a quarter, by kind. Time is compared by the processor's, which a busy machine leaves about as it
 is, and by the clock. Exit code 1 where a limit was not kept.
 
---fit prints constants of host/pipeline/estimate.cpp and parse_memory.h that fit tables best.
+--fit prints constants of host/scale/estimate.cpp and parse_memory.h that fit tables best.
 """
 import argparse
 import json
@@ -32,7 +32,7 @@ KINDS = ['kitchen', 'bathroom', 'bedroom', 'living', 'office', 'shop', 'storage'
 SAID = ['points', 'frames', 'pixels', 'surface_m2', 'tiled', 'cell_m', 'voxel_m', 'views', 'patches_m', 'ground_m2',
         'rough_surfels', 'box_voxels', 'seconds', 'processor_s', 'probe_s', 'memory_bytes', 'least_bytes']
 COLUMNS = ['seed', 'what', 'options', *SAID, 'wall_s', 'spent_s', 'peak_bytes', 'limit_bytes', 'limit_peak_bytes', 'limit']
-# As in host/pipeline/estimate.cpp, and parse_memory.h.
+# As in host/scale/estimate.cpp, and parse_memory.h.
 PROBE_REFERENCE_S, PIXEL_S, TILED_POINT_S, TILED_CELL_S, LAYERS = 0.027, 6e-8, 0.27e-6, 5e-6, 2.3
 WALKED_M2 = 4
 

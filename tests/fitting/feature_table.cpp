@@ -11,19 +11,19 @@
 #include <vector>
 
 #include "device/device.h"
+#include "device/stage_clock.h"
 #include "fitted/boosted_trees.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/shell_features.h"
 #include "geometry/sight_lines.h"
 #include "geometry/surface_samples.h"
 #include "graph/joint_features.h"
+#include "objects/object_stage.h"
 #include "physics/closed_furniture.h"
-#include "pipeline/ingest.h"
-#include "pipeline/object_stage.h"
-#include "pipeline/solid_parts.h"
-#include "pipeline/solid_stage.h"
-#include "pipeline/stage_clock.h"
-#include "pipeline/voxel_size.h"
+#include "points/ingest.h"
+#include "points/voxel_size.h"
+#include "solids/solid_parts.h"
+#include "solids/solid_stage.h"
 #include "topple/error.h"
 
 namespace {

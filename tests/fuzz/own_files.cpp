@@ -11,15 +11,16 @@
 #include "core/checksum.h"
 #include "device/devices.h"
 #include "export/sim_scene.h"
-#include "io/solids_file.h"
 #include "io/text.h"
-#include "pipeline/block_stage.h"
-#include "pipeline/groundwork_fields.h"
-#include "pipeline/join_blocks.h"
-#include "pipeline/object_stage.h"
+#include "objects/object_stage.h"
+#include "pipeline/stages.h"
+#include "result/solids_file.h"
+#include "scale/block_stage.h"
+#include "scale/blocks.h"
+#include "scale/groundwork_fields.h"
+#include "scale/join_blocks.h"
+#include "scale/point_spill.h"
 #include "scenes/temporary_folder.h"
-#include "tiles/blocks.h"
-#include "tiles/point_spill.h"
 #include "topple/parse.h"
 
 namespace topple::fuzz {
@@ -83,7 +84,7 @@ class Room {
         StageClock stage(timings, options);
         device::Device& device = *options.device;
         const Groundwork ground =
-            lay_groundwork(device, ingest_cloud(device, cloud, options), options, "room", stage);
+            find_parts(device, ingest_cloud(device, cloud, options), options, "room", stage);
         layout.frame = ground.parts.frame;
         tiles::BinaryWriter file(folder.path() / "parse.cache");
         write_groundwork(file, ground);

@@ -7,17 +7,17 @@
 #include <new>
 
 #include "fuzz/own_files.h"
-#include "io/frame_sequence.h"
-#include "io/landscapes_json.h"
-#include "io/octomap.h"
-#include "io/read_cloud.h"
-#include "io/read_result_ply.h"
-#include "io/scene_json.h"
 #include "io/text.h"
-#include "io/volume_checks.h"
+#include "points/formats/frame_sequence.h"
+#include "points/formats/octomap.h"
+#include "points/formats/read_cloud.h"
+#include "result/landscapes_json.h"
+#include "result/read_result_ply.h"
+#include "result/scene_json.h"
 #include "topple/corrections.h"
 #include "topple/error.h"
 #include "topple/motion.h"
+#include "vdb/volume_checks.h"
 
 namespace topple::fuzz {
 namespace {

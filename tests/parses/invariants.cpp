@@ -9,8 +9,8 @@
 #include <sstream>
 #include <vector>
 
-#include "io/landscapes_json.h"
-#include "io/scene_json.h"
+#include "result/landscapes_json.h"
+#include "result/scene_json.h"
 
 namespace topple::parses {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/random.h"
 #include "device/devices.h"
 #include "host/pipeline/assessed_room.h"
-#include "safety/directions.h"
+#include "physics/directions.h"
 #include "simulators/script.h"
 
 // The least energy of a blow that makes a thing fall, by direction and height: the table of a parse

@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "device/device.h"
+#include "export/make_sim_scene.h"
 #include "export/write_mjcf.h"
 #include "export/write_sdf.h"
 #include "export/write_urdf.h"
 #include "export/write_usd.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
-#include "pipeline/make_sim_scene.h"
 #include "scenes/temporary_folder.h"
 #include "topple/parse.h"
 

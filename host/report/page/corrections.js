@@ -108,7 +108,7 @@ function asInFile(one) {
 }
 
 // Corrections of a file by what was said with each, in lists: one sentence about several parts may take several entries, one after the
-// other. They share their line `was`, and are of one kind and value at other spots, or apart after one_thing; as host/pipeline/told_sentences.cpp has it.
+// other. They share their line `was`, and are of one kind and value at other spots, or apart after one_thing; as host/objects/told_sentences.cpp has it.
 function sentencesOf(corrections) {
   const out = [], key = value => JSON.stringify(value), alike = (a, b, names) => names.every(name => key(a[name]) === key(b[name]));
   const goesOn = (before, one) => one.was && one.was === before.was && (one.do !== before.do ? before.do === 'one_thing' && one.do === 'apart' :

@@ -126,7 +126,7 @@ function doubtText(object) {
   return 'As scanned a touch would upset it.';
 }
 
-// Of one that events which have happened before would have upset by these figures, as host/pipeline/advise.h has it; '' of others.
+// Of one that events which have happened before would have upset by these figures, as host/safety/advise.h has it; '' of others.
 function stoodText(object) {
   const often = 0.05, upset = disturbanceKinds.filter(kind => kind.everyday && (object.fall_chance || {})[kind.name] >= often);
   return upset.length ? 'It stood there though so many pass: its foot was probably badly seen. Push it by hand first.' : '';

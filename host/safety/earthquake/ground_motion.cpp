@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "core/vectors.h"
+#include "physics/directions.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
-#include "safety/directions.h"
 #include "safety/earthquake/fragility.h"
 #include "safety/earthquake/made_up_records.h"
 

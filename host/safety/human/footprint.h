@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "safety/directions.h"
+#include "physics/directions.h"
 #include "safety/human/secondary_motion.h"
 
 namespace topple::safety {

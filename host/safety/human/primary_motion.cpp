@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core/random.h"
-#include "safety/directions.h"
+#include "physics/directions.h"
 #include "safety/human/grid_line.h"
 #include "safety/human/human_field.h"
 #include "safety/human/walkable_map.h"

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "core/short_number.h"
-#include "safety/directions.h"
+#include "physics/directions.h"
 #include "safety/human/body_parts.h"
 #include "safety/human/human_field.h"
 #include "safety/human/posed_body.h"

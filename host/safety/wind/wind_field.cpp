@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "core/thread_pool.h"
+#include "physics/directions.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
-#include "safety/directions.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
 #include "topple/error.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/api/c_api.h"
-#include "io/read_cloud.h"
+#include "points/formats/read_cloud.h"
 #include "topple/parse.h"
 
 namespace topple::test {

@@ -7,8 +7,8 @@
 #include "export/summary_notes.h"
 #include "host/export/blocks.h"
 #include "host/io/files.h"
-#include "io/scene_json.h"
-#include "io/solids_file.h"
+#include "result/scene_json.h"
+#include "result/solids_file.h"
 #include "topple/export.h"
 
 namespace topple::exports::test {

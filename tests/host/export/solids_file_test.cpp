@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "io/solids_file.h"
+#include "result/solids_file.h"
 
 #include <gtest/gtest.h>
 

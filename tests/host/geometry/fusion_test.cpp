@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/depth_noise.h"
-#include "geometry/frames_fusion.h"
-#include "geometry/frames_witnesses.h"
 #include "geometry_random.h"
+#include "points/frames_fusion.h"
+#include "points/frames_witnesses.h"
 #include "topple/error.h"
 
 namespace topple::geometry {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "geometry/given_attributes.h"
+#include "points/given_attributes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "geometry/pose_comparison.h"
+#include "points/pose_comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

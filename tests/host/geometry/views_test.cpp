@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "device/devices.h"
-#include "geometry/single_scan.h"
-#include "geometry/virtual_views.h"
 #include "geometry_random.h"
+#include "points/single_scan.h"
+#include "points/virtual_views.h"
 
 namespace topple::geometry {
 namespace {

@@ -22,7 +22,7 @@ using test::SampledFaces;
 struct BoxAndTable {
     test::FloorScene solids;
     SampledFaces faces;
-    SurfaceSeams seams;
+    geometry::SurfaceSeams seams;
     std::vector<float> shell{0.999f, 0.02f, 0.01f};
 
     explicit BoxAndTable(double spacing_m, const Vec3& low = {0, 0, 0.4}) : faces(spacing_m) {

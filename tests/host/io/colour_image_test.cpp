@@ -7,9 +7,9 @@
 #include <functional>
 
 #include "files.h"
-#include "io/colour_frames.h"
-#include "io/colour_image.h"
-#include "io/frame_sequence.h"
+#include "points/formats/colour_frames.h"
+#include "points/formats/colour_image.h"
+#include "points/formats/frame_sequence.h"
 
 namespace topple::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "io/frame_sequence.h"
+#include "points/formats/frame_sequence.h"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "files.h"
-#include "io/write_glb.h"
+#include "result/write_glb.h"
 
 namespace topple::io {
 namespace {

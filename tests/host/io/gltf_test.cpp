@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "files.h"
-#include "io/read_cloud.h"
 #include "mesh_files.h"
+#include "points/formats/read_cloud.h"
 
 // What glTF may hold beside floats in a row.
 namespace topple::io {

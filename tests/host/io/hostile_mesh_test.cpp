@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 
-#include "io/gltf_checks.h"
-#include "io/obj_surface.h"
-#include "io/read_cloud.h"
 #include "mesh_files.h"
+#include "points/formats/gltf_checks.h"
+#include "points/formats/obj_surface.h"
+#include "points/formats/read_cloud.h"
 
 // Meshes that would have the library which reads them take far more than their size.
 namespace topple::io {

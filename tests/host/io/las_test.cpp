@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "files.h"
-#include "io/read_cloud.h"
 #include "las_files.h"
+#include "points/formats/read_cloud.h"
 
 namespace topple::io {
 namespace {

@@ -3,9 +3,9 @@
 
 #include "colour_image.h"
 #include "files.h"
-#include "io/read_cloud.h"
-#include "io/write_glb.h"
 #include "mesh_files.h"
+#include "points/formats/read_cloud.h"
+#include "result/write_glb.h"
 
 // Colours of meshes, on the points that their faces become.
 namespace topple::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "io/mesh_sides.h"
+#include "points/formats/mesh_sides.h"
 
 #include <gtest/gtest.h>
 

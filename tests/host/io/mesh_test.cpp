@@ -5,9 +5,9 @@
 #include <string>
 
 #include "files.h"
-#include "io/read_cloud.h"
-#include "io/triangulate.h"
 #include "mesh_files.h"
+#include "points/formats/read_cloud.h"
+#include "points/formats/triangulate.h"
 
 namespace topple::io {
 namespace {

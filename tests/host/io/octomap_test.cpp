@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "io/octomap.h"
+#include "points/formats/octomap.h"
 
 #include <cmath>
 

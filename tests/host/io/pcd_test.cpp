@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "files.h"
-#include "io/read_cloud.h"
+#include "points/formats/read_cloud.h"
 
 namespace topple::io {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "io/read_result_ply.h"
+#include "result/read_result_ply.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "host/io/files.h"
-#include "io/write_ply.h"
+#include "result/write_ply.h"
 
 namespace topple::io {
 namespace {

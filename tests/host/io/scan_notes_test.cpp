@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "io/scan_notes.h"
+#include "points/formats/scan_notes.h"
 
 #include <gtest/gtest.h>
 

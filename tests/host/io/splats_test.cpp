@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "files.h"
-#include "io/read_cloud.h"
+#include "points/formats/read_cloud.h"
 
 namespace topple::io {
 namespace {

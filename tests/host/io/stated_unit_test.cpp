@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "files.h"
-#include "io/read_cloud.h"
 #include "las_files.h"
+#include "points/formats/read_cloud.h"
 
 // Units that a file states.
 namespace topple::io {

@@ -6,8 +6,8 @@
 
 #include "files.h"
 #include "io/mapped_file.h"
-#include "io/read_cloud.h"
 #include "las_files.h"
+#include "points/formats/read_cloud.h"
 
 // Clouds in portions are the same as whole ones.
 namespace topple::io {

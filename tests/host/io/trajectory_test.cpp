@@ -3,7 +3,7 @@
 
 #include "depth_image.h"
 #include "files.h"
-#include "io/frame_sequence.h"
+#include "points/formats/frame_sequence.h"
 
 namespace topple::io {
 namespace {

@@ -11,11 +11,11 @@
 
 #include "files.h"
 #include "io/file_writer.h"
-#include "io/landscapes_json.h"
 #include "io/palette.h"
-#include "io/read_cloud.h"
-#include "io/scene_json.h"
-#include "io/write_ply.h"
+#include "points/formats/read_cloud.h"
+#include "result/landscapes_json.h"
+#include "result/scene_json.h"
+#include "result/write_ply.h"
 
 namespace topple::io {
 namespace {

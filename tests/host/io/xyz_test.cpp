@@ -2,7 +2,7 @@
 #include <chrono>
 
 #include "files.h"
-#include "io/read_cloud.h"
+#include "points/formats/read_cloud.h"
 
 namespace topple::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/advise.h"
+#include "safety/advise.h"
 
 #include <gtest/gtest.h>
 

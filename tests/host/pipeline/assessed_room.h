@@ -7,9 +7,9 @@
 #include "graph/contact_graph.h"
 #include "graph/stable_objects.h"
 #include "host/safety/room.h"
+#include "objects/object_stage.h"
 #include "physics/landscape.h"
-#include "pipeline/object_stage.h"
-#include "pipeline/safety_stage.h"
+#include "safety/safety_stage.h"
 
 namespace topple::test {
 

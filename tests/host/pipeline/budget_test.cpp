@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/budget.h"
+#include "points/budget.h"
 
 #include <gtest/gtest.h>
 

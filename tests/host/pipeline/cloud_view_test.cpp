@@ -12,8 +12,8 @@
 #include "host/io/files.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
-#include "io/read_cloud.h"
-#include "pipeline/ingest.h"
+#include "points/formats/read_cloud.h"
+#include "points/ingest.h"
 
 // Clouds in the caller's memory, whatever their layout.
 namespace topple::test {

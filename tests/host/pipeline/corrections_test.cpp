@@ -12,7 +12,7 @@
 
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
-#include "io/scene_json.h"
+#include "result/scene_json.h"
 #include "vdb/voxel_scene.h"
 
 // Corrections by hand through a whole parse.

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/task_list.h"
+#include "scale/task_list.h"
 #include "scenes/building.h"
 #include "scenes/temporary_folder.h"
 #include "topple/error.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/estimate.h"
+#include "scale/estimate.h"
 
 #include <cmath>
 
 #include "host/pipeline/scan.h"
-#include "pipeline/parse_memory.h"
-#include "pipeline/scan_look.h"
+#include "points/parse_memory.h"
+#include "points/scan_look.h"
 
 namespace topple::test {
 namespace {

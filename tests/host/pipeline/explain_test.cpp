@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/explain.h"
+#include "result/explain.h"
 
 #include <gtest/gtest.h>
 
-#include "pipeline/sentences.h"
+#include "result/sentences.h"
 
 namespace topple {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/find_hidden_walls.h"
+#include "objects/find_hidden_walls.h"
 
 #include <gtest/gtest.h>
 

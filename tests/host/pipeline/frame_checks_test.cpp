@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/frame_checks.h"
+#include "points/frame_checks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/groundwork_file.h"
+#include "scale/groundwork_file.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "device/devices.h"
+#include "pipeline/stages.h"
 #include "small_room.h"
 
 // What a parse goes on from is what was found, not a part of it.
@@ -26,8 +27,8 @@ TEST(GroundworkFile, HoldsAllThatObjectsAreFoundFrom) {
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
     const Groundwork laid =
-        lay_groundwork(*options.device, ingest_cloud(*options.device, room.cloud, options), options,
-                       "room", stage);
+        find_parts(*options.device, ingest_cloud(*options.device, room.cloud, options), options,
+                   "room", stage);
     // The key is of files: of this test's own source, say.
     const GroundworkFile cache(__FILE__, options);
     ASSERT_TRUE(cache.usable());

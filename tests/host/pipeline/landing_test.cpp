@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/landing.h"
+#include "safety/landing.h"
 
 #include <gtest/gtest.h>
 

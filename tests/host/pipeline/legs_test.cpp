@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/legs.h"
+#include "objects/legs.h"
 
 #include <gtest/gtest.h>
 
 #include "assessed_room.h"
 #include "device/devices.h"
-#include "pipeline/find_fastenings.h"
+#include "safety/find_fastenings.h"
 
 namespace topple::test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "core/number_text.h"
 #include "device/devices.h"
-#include "io/scene_json.h"
 #include "io/text.h"
+#include "result/scene_json.h"
 #include "small_room.h"
 #include "topple/parse.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/object_boxes.h"
+#include "objects/object_boxes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/objects_glb.h"
+#include "export/objects_glb.h"
 
 #include <assimp/scene.h>
 
@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
+#include "export/object_surfaces.h"
 #include "host/io/files.h"
-#include "pipeline/object_surfaces.h"
 
 namespace topple {
 namespace {

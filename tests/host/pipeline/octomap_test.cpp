@@ -5,7 +5,7 @@
 
 #include "host/io/octomap_files.h"
 #include "host/pipeline/scan.h"
-#include "pipeline/estimate.h"
+#include "scale/estimate.h"
 #include "vdb/voxel_scene.h"
 
 // A map goes through a parse, and what was seen to be free and occupied comes out as it went in.

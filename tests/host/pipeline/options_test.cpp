@@ -8,7 +8,7 @@
 #include "host/io/files.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
-#include "pipeline/estimate.h"
+#include "scale/estimate.h"
 #include "topple/frame_labels.h"
 #include "topple/parse.h"
 

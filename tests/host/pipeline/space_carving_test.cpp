@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/space_carving.h"
+#include "solids/space_carving.h"
 
 #include <gtest/gtest.h>
 

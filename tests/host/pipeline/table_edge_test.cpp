@@ -6,7 +6,7 @@
 
 #include "device/devices.h"
 #include "host/pipeline/assessed_room.h"
-#include "safety/directions.h"
+#include "physics/directions.h"
 #include "safety/earthquake/earthquake_field.h"
 
 namespace topple::safety {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/read_cloud.h"
+#include "points/formats/read_cloud.h"
 #include "scenes/building.h"
 #include "scenes/temporary_folder.h"
 #include "topple/parse.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "pipeline/scale_checks.h"
+#include "points/scale_checks.h"
 
 namespace topple {
 namespace {

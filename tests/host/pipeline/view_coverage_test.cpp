@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/view_coverage.h"
+#include "points/view_coverage.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/voxel_size.h"
+#include "points/voxel_size.h"
 
 #include <gtest/gtest.h>
 

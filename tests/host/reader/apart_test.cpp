@@ -12,7 +12,7 @@
 #include "host/io/files.h"
 #include "host/io/mesh_files.h"
 #include "host/io/octomap_files.h"
-#include "reader/read_scan.h"
+#include "points/apart/read_scan.h"
 #include "topple/device.h"
 
 namespace topple::reader {

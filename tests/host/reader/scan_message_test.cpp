@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reader/scan_message.h"
+#include "points/apart/scan_message.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "in_browser.h"
-#include "io/scene_json.h"
 #include "report/report.h"
+#include "result/scene_json.h"
 #include "synthetic_scene.h"
 
 // What the report's page says of another parse of the room.

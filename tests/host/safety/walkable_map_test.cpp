@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "physics/directions.h"
 #include "room.h"
-#include "safety/directions.h"
 #include "safety/human/body_parts.h"
 #include "safety/human/footprint.h"
 #include "safety/human/human_field.h"

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "device/devices.h"
+#include "physics/directions.h"
 #include "room.h"
 #include "safety/columns.h"
-#include "safety/directions.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
 #include "topple/error.h"

@@ -12,7 +12,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/read_cloud.h"
+#include "points/formats/read_cloud.h"
 #include "scenes/temporary_folder.h"
 #include "topple/error.h"
 #include "topple/input.h"

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/random.h"
+#include "scale/point_spill.h"
+#include "scale/thinned_bin.h"
+#include "scale/work_files.h"
 #include "scenes/temporary_folder.h"
-#include "tiles/point_spill.h"
-#include "tiles/thinned_bin.h"
-#include "tiles/work_files.h"
 #include "topple/error.h"
 
 namespace topple::tiles {

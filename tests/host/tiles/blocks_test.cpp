@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tiles/blocks.h"
+#include "scale/blocks.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
+#include "scale/point_spill.h"
+#include "scale/thinned_bin.h"
 #include "scenes/temporary_folder.h"
-#include "tiles/point_spill.h"
-#include "tiles/thinned_bin.h"
 
 namespace topple::tiles {
 namespace {

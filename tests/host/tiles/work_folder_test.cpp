@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tiles/work_folder.h"
+#include "scale/work_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "scale/binary_file.h"
+#include "scale/point_spill.h"
+#include "scale/thinned_bin.h"
+#include "scale/work_files.h"
 #include "scenes/temporary_folder.h"
-#include "tiles/binary_file.h"
-#include "tiles/point_spill.h"
-#include "tiles/thinned_bin.h"
-#include "tiles/work_files.h"
 #include "topple/error.h"
 
 namespace topple::tiles {

@@ -20,7 +20,7 @@ from .._arrays import printable
 from .errors import Error, reading, wrong
 
 FORMATS = (laz, e57, ros_bag, colmap, polycam, record3d)
-NOTES = 'topple-notes.txt'  # as host/io/scan_notes.h has it
+NOTES = 'topple-notes.txt'  # as host/points/formats/scan_notes.h has it
 
 
 @dataclasses.dataclass(frozen=True)

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "objects/object_masses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "physics/alike.h"
+#include "physics/closed_furniture.h"
+#include "physics/hollow_body.h"
+
+namespace topple {
+namespace {
+
+std::vector<double> volumes(std::span<const std::int32_t> object_of_primitive,
+                            std::span<const physics::Body> bodies, std::size_t objects) {
+    std::vector<double> out(objects, 0);
+    for (std::size_t p = 0; p < bodies.size(); ++p)
+        out[static_cast<std::size_t>(object_of_primitive[p])] += bodies[p].volume_m3;
+    return out;
+}
+
+std::vector<std::int32_t> members(std::span<const std::int32_t> object_of_primitive,
+                                  std::size_t object) {
+    std::vector<std::int32_t> out;
+    for (std::size_t p = 0; p < object_of_primitive.size(); ++p)
+        if (object_of_primitive[p] == static_cast<std::int32_t>(object))
+            out.push_back(static_cast<std::int32_t>(p));
+    return out;
+}
+
+// What is closed by some ways that voxels may fall, and solid by others, weighs what it does in the
+// mean, and is off by what two such ways differ in the mean of squares, which covers both. A share
+// of how far closed and solid are apart.
+double two_ways_apart(double closed_ways) {
+    return std::sqrt(2 * closed_ways * (1 - closed_ways));
+}
+
+physics::BodyError scaled(physics::BodyError error, double factor) {
+    error.mass_kg *= factor;
+    for (double& e : error.center_m) e *= factor;
+    return error;
+}
+
+// Makes the shell that is known of one object.
+void hollow_out(const SolidScene& solids, std::span<const std::int32_t> primitives, double wall_m,
+                double density_kg_m3, std::vector<physics::Body>& bodies,
+                physics::Symmetric& inertia) {
+    const physics::HollowBody shell = physics::hollow_body(solids, primitives, wall_m);
+    for (std::size_t n = 0; n < primitives.size(); ++n) {
+        physics::Body& body = bodies[static_cast<std::size_t>(primitives[n])];
+        body.mass_kg = density_kg_m3 * shell.volume_m3[n];
+        if (shell.volume_m3[n] > 0) body.center = shell.center[n];
+    }
+    for (std::size_t e = 0; e < inertia.size(); ++e)
+        inertia[e] = density_kg_m3 * shell.inertia_m5[e];
+}
+
+// Scales the densities of one object to its mass.
+void weigh(std::span<const std::int32_t> primitives, double mass_kg,
+           std::vector<physics::Body>& bodies, physics::Symmetric& inertia) {
+    double before = 0;
+    for (const std::int32_t p : primitives) before += bodies[static_cast<std::size_t>(p)].mass_kg;
+    if (!(before > 0)) return;
+    for (const std::int32_t p : primitives)
+        bodies[static_cast<std::size_t>(p)].mass_kg *= mass_kg / before;
+    for (double& value : inertia) value *= mass_kg / before;
+}
+
+}  // namespace
+
+ObjectMasses weigh_objects(const SolidScene& solids,
+                           std::span<const std::int32_t> object_of_primitive,
+                           std::span<const KnownMass> known, std::int32_t grounded,
+                           const ParseOptions& options, std::vector<physics::Body>& bodies) {
+    const std::size_t objects = known.size();
+    ObjectMasses out;
+    out.closed.assign(objects, false);
+    out.hollow = out.weighed = out.closed;
+    out.contents_error.resize(objects);
+    std::vector<double> density(objects, options.density_kg_m3), inertia_density = density;
+    const std::vector<double> volume = volumes(object_of_primitive, bodies, objects);
+    auto looks = physics::furniture_looks(solids, object_of_primitive, volume);
+    for (std::size_t o = 0; o < objects; ++o)
+        if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) looks[o] = {};
+    const physics::Alike alike = physics::alike_objects(looks);
+    if (options.contents_kg_m3) {
+        const std::vector<physics::ClosedOdds> odds = physics::closed_odds(looks, alike);
+        for (std::size_t o = 0; o < objects; ++o) {
+            const double share = odds[o].closed_ways;
+            if (share == 0) continue;
+            const physics::ClosedBody body = physics::closed_body(
+                looks[o], volume[o], options.density_kg_m3, *options.contents_kg_m3);
+            const double less_kg_m3 = options.density_kg_m3 - body.density_kg_m3;
+            out.closed[o] = share > 0.5;
+            out.contents_error[o] = scaled(body.error, share);
+            out.contents_error[o].mass_kg = std::hypot(
+                out.contents_error[o].mass_kg, two_ways_apart(share) * less_kg_m3 * volume[o]);
+            density[o] -= share * less_kg_m3;
+            inertia_density[o] += share * (body.inertia_density_kg_m3 - inertia_density[o]);
+        }
+    }
+    for (std::size_t p = 0; p < bodies.size(); ++p) {
+        out.density_kg_m3.push_back(density[static_cast<std::size_t>(object_of_primitive[p])]);
+        bodies[p].mass_kg = bodies[p].volume_m3 * out.density_kg_m3.back();
+    }
+    const std::vector<physics::Symmetric> moments = physics::second_moments(
+        solids.cells(), static_cast<std::int32_t>(bodies.size()), solids.boundary());
+    out.inertia =
+        physics::inertia_of_objects(moments, bodies, object_of_primitive, inertia_density);
+    for (std::size_t o = 0; o < objects; ++o) {
+        out.hollow[o] = known[o].wall_m.has_value();
+        out.weighed[o] = known[o].mass_kg.has_value();
+        if (!out.hollow[o] && !out.weighed[o]) continue;
+        const std::vector<std::int32_t> primitives = members(object_of_primitive, o);
+        if (out.hollow[o])
+            hollow_out(solids, primitives, *known[o].wall_m, options.density_kg_m3, bodies,
+                       out.inertia[o]);
+        if (out.weighed[o]) weigh(primitives, *known[o].mass_kg, bodies, out.inertia[o]);
+        for (const std::int32_t p : primitives) {
+            const physics::Body& body = bodies[static_cast<std::size_t>(p)];
+            out.density_kg_m3[static_cast<std::size_t>(p)] =
+                body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0;
+        }
+    }
+    std::vector<double> mass(objects, 0);
+    for (std::size_t p = 0; p < bodies.size(); ++p)
+        mass[static_cast<std::size_t>(object_of_primitive[p])] += bodies[p].mass_kg;
+    for (std::size_t o = 0; o < objects; ++o)
+        out.alike_error_kg.push_back(physics::error_among_alike_kg(mass, alike[o], o));
+    return out;
+}
+
+}  // namespace topple

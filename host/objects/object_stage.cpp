@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: MIT
+#include "objects/object_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "core/thread_pool.h"
+#include "fitted/boosted_trees.h"
+#include "geometry/primitive_shapes.h"
+#include "graph/false_feet.h"
+#include "objects/find_hidden_walls.h"
+#include "objects/object_masses.h"
+#include "physics/body_landscape.h"
+#include "physics/directions.h"
+#include "physics/drop.h"
+#include "physics/leaning.h"
+#include "physics/overturning.h"
+#include "physics/solid_hulls.h"
+#include "solids/cell_shape.h"
+
+namespace topple {
+namespace {
+
+// 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
+constexpr unsigned sphere_frequency = 16;
+
+// What is less sure to be the room's than this is left to its joints.
+constexpr double surely_shell = 0.9;
+
+graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
+    graph::ShellOdds out{log_odds, {}};
+    for (const double odds : log_odds) out.pinned.push_back(odds > fitted::log_odds(surely_shell));
+    // Something is the ground that all else stands on: a table in a close view.
+    if (!log_odds.empty() && std::ranges::find(out.pinned, true) == out.pinned.end())
+        out.pinned[static_cast<std::size_t>(std::ranges::max_element(log_odds) -
+                                            log_odds.begin())] = true;
+    return out;
+}
+
+std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::ContactGraph& contacts,
+                                      std::span<const physics::Body> bodies, ThreadPool& threads) {
+    std::vector<float> shell;
+    for (const double odds : parts.shell_log_odds)
+        shell.push_back(static_cast<float>(fitted::probability(odds)));
+    return graph::find_joints(parts.samples,
+                              geometry::primitive_shapes(parts.samples, parts.model.size()),
+                              contacts, bodies, parts.seams, shell, threads);
+}
+
+void add_independent(const physics::BodyError& more, physics::BodyError& to) {
+    to.mass_kg = std::hypot(to.mass_kg, more.mass_kg);
+    for (std::size_t a = 0; a < 3; ++a)
+        to.center_m[a] = std::hypot(to.center_m[a], more.center_m[a]);
+}
+
+// The ground comes first, where there is one.
+std::int32_t grounded_object(const ObjectStage& of) {
+    const auto& group = of.grouping.group;
+    return std::ranges::find(group, -1) == group.end() ? -1 : 0;
+}
+
+void number_objects(ObjectStage& out) {
+    const std::int32_t grounded = grounded_object(out);
+    for (const std::int32_t g : out.grouping.group)
+        out.object_of_primitive.push_back(g + grounded + 1);
+}
+
+// By primitive the voxels that its surface was seen in.
+std::vector<std::uint64_t> seen_surface(const SolidCells& cells, std::size_t primitives) {
+    std::vector<std::uint64_t> out(primitives, 0);
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (cells.primitive[n] >= 0 && cells.basis[n] == Basis::surface)
+            ++out[static_cast<std::size_t>(cells.primitive[n])];
+    return out;
+}
+
+// What objects may be pieces of, and whether they may be several.
+void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
+                   const SolidCells& cells, ObjectStage& out) {
+    const std::vector<std::uint64_t> seen = seen_surface(cells, out.object_of_primitive.size());
+    std::vector<std::uint64_t> of_objects(out.objects.size(), 0);  // none of the ground
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+        const auto o = static_cast<std::size_t>(out.object_of_primitive[p]);
+        if (!out.objects[o].grounded) of_objects[o] += seen[p];
+    }
+    const std::vector<graph::PieceOf> pieces =
+        graph::likely_pieces(joints, links, out.object_of_primitive, of_objects);
+    const std::vector<graph::WeakestJoint> weakest =
+        graph::weakest_joints(joints, links, out.object_of_primitive, seen, out.objects.size());
+    for (std::size_t o = 0; o < out.objects.size(); ++o) {
+        out.objects[o].piece = pieces[o];
+        if (!out.objects[o].grounded) out.objects[o].weakest = weakest[o];
+    }
+}
+
+// The heights of the floors, ascending: levels with a hundredth of what is floor.
+std::vector<double> floor_levels(const SolidScene& solids) {
+    const SolidCells& cells = solids.cells();
+    std::map<std::int32_t, std::size_t> count;
+    std::size_t all = 0;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        if (cells.primitive[c] < 0 || solids.role(cells.primitive[c]) != Role::floor) continue;
+        ++count[cells.k[c]];
+        ++all;
+    }
+    std::vector<double> out;
+    for (const auto& [k, n] : count)
+        if (100 * n >= all) out.push_back((k + 1) * cells.voxel_m);
+    return out;
+}
+
+// The highest of them that is not above the height; where there is none, the height itself.
+double floor_below(const std::vector<double>& floors, double height_m) {
+    constexpr double slack_m = 0.05;
+    const auto above = std::ranges::upper_bound(floors, height_m + slack_m);
+    return above == floors.begin() ? height_m : std::min(*std::prev(above), height_m);
+}
+
+// Objects by group, the ground first.
+void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, bool sensed,
+                     const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
+                     ObjectStage& out) {
+    const SolidCells& cells = solids.cells();
+    const BoundaryCells& boundary = solids.boundary();
+    const std::vector<std::int32_t>& group = out.grouping.group;
+    const bool has_ground = grounded_object(out) == 0;
+    std::int32_t objects = 0;
+    for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
+    const std::vector<KnownMass> known = hand.masses(
+        out.object_of_primitive, static_cast<std::size_t>(objects), grounded_object(out));
+    const ObjectMasses masses = weigh_objects(solids, out.object_of_primitive, known,
+                                              grounded_object(out), options, out.bodies);
+    std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
+    for (std::size_t p = 0; p < group.size(); ++p) {
+        members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
+            static_cast<std::int32_t>(p));
+    }
+    const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
+    const auto errors = physics::volume_errors(cells, boundary);
+    const std::vector<double> floors = floor_levels(solids);
+    out.objects.resize(members.size());
+    threads.each(members.size(), 1, [&](std::size_t o) {
+        StableObject& object = out.objects[o];
+        object.candidate =
+            graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
+        object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
+                                                errors, masses.density_kg_m3);
+        object.closed = masses.closed[o];
+        object.hollow = masses.hollow[o];
+        object.inertia = masses.inertia[o];
+        add_independent(masses.contents_error[o], object.body_error);
+        // What is off of alike things holds what is off of each by itself.
+        object.body_error.mass_kg = std::max(object.body_error.mass_kg, masses.alike_error_kg[o]);
+        if (masses.weighed[o]) object.body_error.mass_kg = 0;
+        object.grounded = has_ground && o == 0;
+        if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
+        if (!object.grounded) {
+            graph::Rest rest = graph::infer_rest(
+                object.candidate, columns[o], out.contacts, boundary,
+                std::max(object.body_error.center_m[0], object.body_error.center_m[1]), floors);
+            object.rest = rest.kind;
+            object.rest_probability = rest.probability;
+            object.margin_error_m = rest.margin_error_m;
+            if (sensed) object.unseen_margin_m = rest.unseen_margin_m;
+            object.candidate.stood = rest.kind != graph::RestKind::none;
+            object.candidate.support_polygon = std::move(rest.support_polygon);
+            object.candidate.support_height_m = rest.support_height_m;
+        }
+        object.lowest_m = std::numeric_limits<double>::infinity();
+        object.highest_m = -object.lowest_m;
+        for (const std::int32_t p : object.candidate.primitives) {
+            object.lowest_m =
+                std::min(object.lowest_m, out.contacts.lowest_m[static_cast<std::size_t>(p)]);
+            object.highest_m =
+                std::max(object.highest_m, out.contacts.highest_m[static_cast<std::size_t>(p)]);
+        }
+    });
+    std::vector<graph::Carried> carried;
+    for (const StableObject& o : out.objects)
+        carried.push_back({o.grounded, o.candidate.body.mass_kg});
+    out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
+                                        carried, columns);
+}
+
+}  // namespace
+
+PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
+                      StageClock& stage) {
+    const auto count = static_cast<std::int32_t>(parts.model.size());
+    const std::vector<double> density(static_cast<std::size_t>(count), options.density_kg_m3);
+    const SolidCells& cells = parts.solids->cells();
+    std::vector<physics::Body> bodies =
+        stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
+    graph::ContactGraph contacts =
+        stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
+    std::vector<graph::Joint> joints =
+        stage("joints", [&] { return find_joints(parts, contacts, bodies, device.threads()); });
+    return {std::move(bodies), std::move(contacts), std::move(joints),
+            shell_odds(parts.shell_log_odds)};
+}
+
+physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
+                              double friction) {
+    return {object.candidate, {object.inertia, object.highest_m},
+            tipping,          safety::directions(),
+            object.sliding,   friction};
+}
+
+std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
+                                   const std::vector<StableObject>& objects) {
+    std::vector<bool> out;
+    for (const std::int32_t o : object_of_primitive)
+        out.push_back(o >= 0 && objects[static_cast<std::size_t>(o)].grounded);
+    return out;
+}
+
+void find_barriers(device::Device& device, const physics::SupportTable& table,
+                   const SolidScene& solids, const physics::HiddenWalls& walls,
+                   std::span<const std::int32_t> object_of_primitive, double friction,
+                   std::vector<StableObject>& objects, const Unseen& unseen) {
+    const SolidCells& cells = solids.cells();
+    const CellColumns& columns = solids.columns();
+    const std::vector<ObjectBox> boxes = object_boxes(solids, object_of_primitive, objects.size());
+    for (std::size_t o = 0; o < objects.size(); ++o) objects[o].box = boxes[o];
+    std::vector<physics::Candidate> candidates;
+    for (StableObject& o : objects) {
+        if (!o.grounded && !o.candidate.support_polygon.empty())
+            o.candidate.edge_drop_m =
+                physics::drops_when_tipped_m(cells, columns, o.candidate, unseen);
+        candidates.push_back(o.candidate);
+    }
+    std::vector<physics::Stability> tipping =
+        physics::evaluate(device, table, candidates, physics::Passes::exact);
+    std::vector<physics::Stability> level = tipping;
+    std::vector<std::size_t> dropping;
+    std::vector<physics::Candidate> held;
+    for (std::size_t o = 0; o < candidates.size(); ++o) {
+        const auto& drops = candidates[o].edge_drop_m;
+        if (std::ranges::none_of(drops, [](double drop) { return drop > 0; })) continue;
+        dropping.push_back(o);
+        held.push_back(candidates[o]);
+        held.back().edge_drop_m.clear();
+    }
+    const auto on_level = physics::evaluate(device, table, held, physics::Passes::exact);
+    for (std::size_t n = 0; n < dropping.size(); ++n) level[dropping[n]] = on_level[n];
+    std::vector<physics::Body> bodies;
+    // What is fixed to the ground does not slide: no mass, nothing to search.
+    for (const StableObject& o : objects)
+        bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
+    std::vector<physics::Stance> stances;
+    for (const StableObject& o : objects) {
+        stances.push_back({o.candidate.stood ? o.candidate.support_polygon : physics::Polygon{},
+                           o.candidate.support_height_m, o.rest != graph::RestKind::seen});
+    }
+    const std::vector<double> all_friction(candidates.size(), friction);
+    std::vector<physics::SlideResult> sliding =
+        physics::slide_all(cells, object_of_primitive, bodies, all_friction,
+                           {.places = true,
+                            .stances = stances,
+                            .ways = safety::directions(),
+                            .threads = &device.threads(),
+                            .unseen = unseen});
+    const std::vector<double> floors = floor_levels(solids);
+    const std::vector<bool> fixed = fixed_primitives(object_of_primitive, objects);
+    device.threads().each(objects.size(), 1, [&](std::size_t o) {
+        if (objects[o].grounded) return;
+        objects[o].open_tipping = tipping[o];
+        if (auto beside = physics::beside_fixed(cells, columns, walls, candidates[o], fixed,
+                                                objects[o].highest_m, tipping[o]))
+            tipping[o] = std::move(*beside);
+        physics::Instability& how = objects[o].instability;
+        how = physics::combine_curves(tipping[o], sliding[o]);
+        if (how.mode == "tip" && how.drop_m > 0)
+            how.onto = physics::met_when_tipped(cells, columns, candidates[o], how.weakest,
+                                                (*how.edge)[0]);
+        objects[o].barrier_error_J =
+            physics::barrier_error_J(candidates[o], objects[o].body_error, tipping[o], how,
+                                     objects[o].margin_error_m, friction);
+        objects[o].seen_error_J = objects[o].barrier_error_J;
+        // Its upper end is that of a foot that goes on unseen.
+        if (how.mode != "slide")
+            objects[o].barrier_error_J =
+                std::max(objects[o].barrier_error_J,
+                         physics::tipping_barrier_J(candidates[o], objects[o].unseen_margin_m) -
+                             how.barrier_J);
+        objects[o].overturning =
+            physics::overturning(candidates[o], objects[o].body_error, tipping[o],
+                                 objects[o].box.top_m(), objects[o].margin_error_m, friction,
+                                 floor_below(floors, candidates[o].support_height_m));
+        objects[o].tipping = std::move(tipping[o]);
+        objects[o].level_tipping = std::move(level[o]);
+        objects[o].sliding = std::move(sliding[o]);
+        if (!candidates[o].support_polygon.empty())
+            objects[o].toppling = std::make_shared<physics::Toppling>(
+                toppling_of(objects[o], objects[o].tipping, friction));
+        objects[o].poses = physics::body_landscape(table, candidates[o], objects[o].tipping.ways);
+    });
+}
+
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid) {
+    return find_objects(device, options, stage, solid, weigh_parts(device, solid, options, stage));
+}
+
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid, PartStage parts) {
+    ObjectStage out;
+    HandCorrections hand(options.corrections, solid);
+    stage("grouping", [&] {
+        graph::GroupingOptions grouping;
+        grouping.seed = options.seed;
+        grouping.time_limit_s = options.grouping_time_s.value_or(0);
+        grouping.cancelled = options.cancelled;
+        grouping.links = hand.links();
+        hand.keep_apart(*solid.solids, parts.shell);
+        out.grouping = graph::group_primitives(parts.contacts, parts.bodies, parts.joints,
+                                               parts.shell, grouping, device.threads().threads());
+        out.taken = hand.take_from(solid, out.grouping, parts.shell, parts.joints);
+        hand.fix(solid, out.grouping, parts.shell);
+        number_objects(out);
+        // Joints were judged with all that was completed, as their models were fitted.
+        solid.solids =
+            graph::without_false_feet(solid.solids, out.object_of_primitive, grounded_object(out));
+    });
+    const SolidCells& cells = solid.solids->cells();
+    const BoundaryCells& boundary = solid.solids->boundary();
+    const std::vector<double> density(solid.model.size(), options.density_kg_m3);
+    out.bodies = stage("masses", [&] {
+        return physics::mass_properties(device, cells, static_cast<std::int32_t>(density.size()),
+                                        density, boundary);
+    });
+    // The models of joints know contacts of whole voxels; what follows takes their true borders.
+    const auto count = static_cast<std::int32_t>(solid.model.size());
+    out.contacts = stage(
+        "borders", [&] { return graph::build_contact_graph(device, cells, count, boundary); });
+    out.pair_probability =
+        graph::pair_probabilities(out.contacts, parts.joints, parts.shell, hand.links());
+    const physics::SupportTable table = stage("supports", [&] {
+        std::vector<bool> loose;
+        for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
+        return physics::SupportTable(device,
+                                     physics::solid_hulls(cells, boundary, loose, device.threads()),
+                                     solids::form_error_m(boundary, cells.voxel_m),
+                                     physics::geodesic_sphere(sphere_frequency));
+    });
+    stage("barriers", [&] {
+        collect_objects(*solid.solids, parts.shell.pinned, solid.sensed != nullptr, options,
+                        device.threads(), hand, out);
+        out.hidden_walls = find_hidden_walls(
+            solid, out.object_of_primitive, fixed_primitives(out.object_of_primitive, out.objects));
+        find_barriers(device, table, *solid.solids, out.hidden_walls, out.object_of_primitive,
+                      options.friction, out.objects, unseen_of(solid));
+    });
+    doubt_objects(parts.joints, hand.links(), cells, out);
+    out.told = hand.tell(out.object_of_primitive, out.objects.size(), grounded_object(out));
+    return out;
+}
+
+}  // namespace topple

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "device/device.h"
+#include "device/stage_clock.h"
+#include "graph/contact_graph.h"
+#include "graph/pieces.h"
+#include "graph/rest.h"
+#include "graph/stable_objects.h"
+#include "graph/supports.h"
+#include "objects/hand_corrections.h"
+#include "objects/object_boxes.h"
+#include "physics/bodies.h"
+#include "physics/hidden_walls.h"
+#include "physics/inertia.h"
+#include "physics/landscape.h"
+#include "physics/sliding.h"
+#include "physics/toppling.h"
+#include "solids/solid_parts.h"
+
+// Sections 3 and 4 of the paper: from solid primitives to stable objects. Grid frame.
+namespace topple {
+
+// One object: a group of primitives, or the ground with all that is fixed to it.
+struct StableObject {
+    physics::Candidate candidate;
+    bool grounded = false;
+    physics::Stability tipping;
+    physics::Stability open_tipping;   // if nothing of the building stood beside it
+    physics::Stability level_tipping;  // and its support went on beyond all of its edges
+    physics::SlideResult sliding;
+    physics::Instability instability;  // of tipping and sliding together
+    bool closed = false;               // furniture of boards around contents
+    bool hollow = false;               // a shell, as somebody knows
+    physics::Symmetric inertia{};
+    physics::BodyError body_error;
+    double barrier_error_J = 0;
+    double seen_error_J = 0;  // the same of what was seen of its foot: risk knows of no more
+    Overturning overturning;
+    std::shared_ptr<const physics::Toppling> toppling;  // none: nothing holds it, or it is grounded
+    // How it stands (graph/rest.h); its candidate is held up in that way.
+    graph::RestKind rest = graph::RestKind::seen;
+    double rest_probability = 1;
+    double margin_error_m = 0;   // to which the border of its support is known
+    double unseen_margin_m = 0;  // as of graph::Rest, where it is known what sensors saw
+    // Whether what holds it up was seen well enough to say what a push does.
+    bool seen_enough() const {
+        return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
+    }
+    double agreement = 1;                // share of the sampler's chains that found it
+    graph::PieceOf piece;                // what it may be a piece of
+    graph::WeakestJoint weakest;         // what it hangs together by
+    Landscape poses;                     // grid frame; its places are those of `sliding`
+    double lowest_m = 0, highest_m = 0;  // of its voxels
+    ObjectBox box;
+};
+
+// S(W) by direction and height of an object that tips so, as it stands.
+physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
+                              double friction);
+
+struct ObjectStage {
+    std::vector<physics::Body> bodies;  // by primitive
+    graph::ContactGraph contacts;
+    std::vector<double> pair_probability;  // by pair of the contacts: that both are one solid
+    graph::Grouping grouping;
+    std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
+    std::vector<StableObject> objects;
+    physics::HiddenWalls hidden_walls;
+    std::vector<Support> supports;  // sorted by (supporter, supported)
+    HandCorrections::Told told;
+    std::optional<TakenAway> taken;  // by hand from the parts, before all else here
+};
+
+// What grouping starts from.
+struct PartStage {
+    std::vector<physics::Body> bodies;  // by primitive
+    graph::ContactGraph contacts;
+    std::vector<graph::Joint> joints;
+    graph::ShellOdds shell;
+};
+PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
+                      StageClock& stage);
+
+// By primitive, whether it is of the building, or of what is fixed to it.
+std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
+                                   const std::vector<StableObject>& objects);
+
+// What a push does to objects whose candidates are known, all in one batch: fills in the drops over
+// their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
+// falls, and so do walls behind what hides them.
+void find_barriers(device::Device& device, const physics::SupportTable& table,
+                   const SolidScene& solids, const physics::HiddenWalls& walls,
+                   std::span<const std::int32_t> object_of_primitive, double friction,
+                   std::vector<StableObject>& objects, const Unseen& unseen = {});
+
+// Takes from the parts what is not there by hand, and from the solids what turns out to be no
+// object's (graph/false_feet.h).
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid, PartStage parts);
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid);
+
+}  // namespace topple

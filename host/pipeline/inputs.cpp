@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "device/cancelling.h"
+#include "device/device.h"
+#include "device/stage_clock.h"
+#include "io/text.h"
+#include "objects/groundwork.h"
+#include "objects/object_stage.h"
+#include "pipeline/stages.h"
+#include "pipeline/whole_progress.h"
+#include "points/budget.h"
+#include "points/formats/frame_sequence.h"
+#include "points/formats/scan_notes.h"
+#include "points/ingest.h"
+#include "points/voxel_size.h"
+#include "result/assemble.h"
+#include "result/nothing_judged.h"
+#include "safety/disturbances.h"
+#include "safety/safety_stage.h"
+#include "scale/groundwork_file.h"
+#include "scale/tiled_parse.h"
+#include "solids/voxel_stage.h"
+#include "topple/parse.h"
+
+namespace topple {
+namespace {
+
+using Timings = std::vector<std::pair<std::string, double>>;
+
+// find(device, stage): the groundwork. timings: of the stages before it.
+template <class Find>
+ParseResult run(const std::string& source, const ParseOptions& options, Find find,
+                Timings timings = {}) {
+    const auto device = options.device ? options.device : device::open_device("auto");
+    StageClock stage(timings, options);
+    const device::InUse in_use(*device);
+    const Cancelling cancelling(*device, options);
+    ParseResult result = judge_parts(*device, find(*device, stage), options, source, stage);
+    result.scene.timings_s = std::move(timings);
+    return result;
+}
+
+// Options that are about files, of a scan in memory.
+void refuse_file_options(const ParseOptions& options) {
+    if (!options.cache_file.empty())
+        throw Error(ErrorKind::usage, "ParseOptions::cache_file " +
+                                          io::path_text(options.cache_file) +
+                                          ": a cache is kept of a file or folder, and the scan is "
+                                          "in memory; leave it out, or parse its file");
+    if (!options.work_folder.empty())
+        throw Error(ErrorKind::usage,
+                    "work_folder " + io::path_text(options.work_folder) +
+                        ": only clouds in files are parsed in blocks, which are kept there, and "
+                        "the scan is in memory; leave it out");
+}
+
+void refuse_tiles(const ParseOptions& options) {
+    if (options.tile_m == 0) return;
+    throw Error(ErrorKind::usage,
+                "ParseOptions::tile_m " + short_number(options.tile_m) +
+                    ": only clouds in files are parsed in blocks (.ply, .pcd, .las and .xyz); "
+                    "leave it out");
+}
+
+bool keeps_groundwork(const ParseOptions& options) {
+    return !options.cache_file.empty() && options.tile_m == 0;
+}
+
+// cache: where it was looked for already.
+ParseResult parse_whole(const std::filesystem::path& input, const ParseOptions& options,
+                        GroundworkFile cache, Timings timings) {
+    const auto find = [&](device::Device& device, StageClock& stage) {
+        Ingested ingested = stage("ingest", [&] {
+            Ingested read = ingest(device, input, options);
+            // Of what can be read: what can't may be of any size.
+            if (keeps_groundwork(options) && !cache.usable())
+                cache = GroundworkFile(input, options);
+            return read;
+        });
+        Groundwork ground =
+            find_parts(device, std::move(ingested), options, input.string(), stage);
+        if (cache.usable()) stage("cache", [&] { cache.write(ground); });
+        return ground;
+    };
+    return run(input.string(), options, find, std::move(timings));
+}
+
+// Checks the options, and tells at once of one that was meant otherwise, perhaps.
+void take_options(const ParseOptions& options) {
+    check_options(options);
+    const std::string note = light_density_note(options.density_kg_m3);
+    if (!note.empty() && options.notice) options.notice(note);
+}
+
+// The result, whose notes begin with what the options make doubtful, and go on with `notes`; before
+// them that nothing was judged, if so.
+ParseResult noted(ParseResult result, const ParseOptions& options,
+                  std::vector<std::string> notes = {}) {
+    std::vector<std::string> all;
+    for (const std::string& name : options.disturbances) {
+        const auto doubt = safety::disturbance_kind(name).doubt;
+        if (std::string asked = doubt ? doubt(options) : ""; !asked.empty())
+            all.push_back(std::move(asked));
+    }
+    all.insert(all.end(), notes.begin(), notes.end());
+    std::vector<std::string>& own = result.scene.notes;
+    own.insert(own.begin(), all.begin(), all.end());
+    note_nothing_judged(result.scene);
+    return result;
+}
+
+ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options) {
+    GroundworkFile cache;
+    Timings timings;
+    if (keeps_groundwork(options) && !options.device) options.device = device::open_device("auto");
+    std::error_code error;
+    if (keeps_groundwork(options) && std::filesystem::exists(options.cache_file, error)) {
+        std::optional<Groundwork> ground = StageClock(timings, options)("cache", [&] {
+            cache = GroundworkFile(input, options);
+            return cache.read();
+        });
+        if (ground)
+            return run(
+                input.string(), options,
+                [&](device::Device&, StageClock&) { return *std::move(ground); },
+                std::move(timings));
+    }
+    if (std::optional<ParseResult> tiled = parse_tiled(input, options)) return *std::move(tiled);
+    if (std::filesystem::exists(input, error)) refuse_tiles(options);
+    return parse_whole(input, options, std::move(cache), std::move(timings));
+}
+
+}  // namespace
+
+ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
+    take_options(options);
+    check_path(input);
+    // First, as it is told early what can't be read.
+    std::vector<std::string> notes = io::scan_notes(input);
+    const auto kind =
+        io::looks_like_sequence(input) ? WholeProgress::Input::frames : WholeProgress::Input::cloud;
+    Budget budget(io::path_text(input), bytes_of_input(input), options);
+    return noted(tell_whole(kind, budget.polled(),
+                            [&](const ParseOptions& o) { return parse_scan(input, o); }),
+                 options, std::move(notes));
+}
+
+ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
+    take_options(options);
+    refuse_file_options(options);
+    refuse_tiles(options);
+    const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
+    const auto parse_view = [&](const ParseOptions& o) {
+        return run(source, o, [&](device::Device& device, StageClock& stage) {
+            Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, o); });
+            return find_parts(device, std::move(input), o, source, stage);
+        });
+    };
+    Budget budget(source, 3 * sizeof(float) * cloud.size(), options);
+    return noted(tell_whole(WholeProgress::Input::cloud, budget.polled(), parse_view), options);
+}
+
+ParseResult parse(const FramesView& frames, const ParseOptions& options) {
+    take_options(options);
+    refuse_file_options(options);
+    refuse_tiles(options);
+    const std::string source = frames.source.empty() ? "frames" : frames.source;
+    const auto parse_view = [&](const ParseOptions& o) {
+        return run(source, o, [&](device::Device& device, StageClock& stage) {
+            Ingested input = stage("ingest", [&] { return ingest_frames_view(device, frames, o); });
+            return find_parts(device, std::move(input), o, source, stage);
+        });
+    };
+    const std::size_t count =
+        std::max({frames.images.size(), frames.camera_to_world.size(), std::size_t{1}});
+    const std::uint64_t pixels = io::saturating_multiply(
+        std::uint64_t{frames.intrinsics.width} * frames.intrinsics.height, count);
+    Budget budget(source, io::saturating_multiply(sizeof(std::uint16_t), pixels), options);
+    return noted(tell_whole(WholeProgress::Input::frames, budget.polled(), parse_view), options);
+}
+
+}  // namespace topple

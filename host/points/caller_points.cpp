@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "points/caller_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/room_measures.h"
+#include "io/text.h"
+#include "points/formats/cloud_builder.h"
+#include "topple/error.h"
+
+namespace topple {
+namespace {
+
+[[noreturn]] void refuse(const CloudView& view, const std::string& why) {
+    throw Error(ErrorKind::input, view.source + ": " + why);
+}
+
+template <class T>
+void check_column(const CloudView& view, const char* name, const Column<T>& column) {
+    if (column.size() != view.size()) {
+        refuse(view, std::string(name) + " has " + std::to_string(column.size()) +
+                         " values, but x has " + std::to_string(view.size()));
+    }
+    if (!column.data() && view.size() > 0) refuse(view, std::string(name) + " is a null pointer");
+}
+
+// That an organised cloud has the pixels that it names.
+void check_image(const CloudView& view) {
+    if (view.width == 0 && view.height == 0) {
+        if (view.pixel.empty()) return;
+        refuse(view, "pixel is given, but width and height are 0; give those of the image");
+    }
+    const std::uint64_t pixels = std::uint64_t{view.width} * view.height;
+    const std::string image = std::to_string(view.width) + " x " + std::to_string(view.height);
+    if (view.pixel.empty() && pixels != view.size()) {
+        refuse(view, "an organised cloud of " + image + " pixels has as many points, but x has " +
+                         std::to_string(view.size()) +
+                         " values; give `pixel`, or 0 for both where it is none");
+    }
+    const auto beyond =
+        std::ranges::find_if(view.pixel, [&](std::uint64_t p) { return p >= pixels; });
+    if (beyond != view.pixel.end())
+        refuse(view, "pixel " + std::to_string(*beyond) + " lies outside of its " + image);
+}
+
+void check_viewpoint(const CloudView& view) {
+    if (!view.has_viewpoint) return;
+    for (const double value : view.viewpoint) {
+        if (!(std::abs(value) <= farthest_m))
+            refuse(view, "its viewpoint has a coordinate of " + io::short_number(value) +
+                             "; expected metres up to " + io::short_number(farthest_m) +
+                             ", or none");
+    }
+}
+
+void check_arrays(const CloudView& view) {
+    const bool normals = !view.nx.empty() || !view.ny.empty() || !view.nz.empty();
+    const std::array<std::pair<const char*, const FloatColumn*>, 6> columns{{{"x", &view.x},
+                                                                             {"y", &view.y},
+                                                                             {"z", &view.z},
+                                                                             {"nx", &view.nx},
+                                                                             {"ny", &view.ny},
+                                                                             {"nz", &view.nz}}};
+    for (std::size_t c = 0; c < (normals ? 6 : 3); ++c)
+        check_column(view, columns[c].first, *columns[c].second);
+    if (!view.viewpoint_x.empty() || !view.viewpoint_y.empty() || !view.viewpoint_z.empty()) {
+        check_column(view, "viewpoint_x", view.viewpoint_x);
+        check_column(view, "viewpoint_y", view.viewpoint_y);
+        check_column(view, "viewpoint_z", view.viewpoint_z);
+        if (view.height > 1)
+            refuse(view,
+                   "it is organised, of one image, but has a viewpoint for each point; leave "
+                   "out either width and height or viewpoint_x, viewpoint_y and viewpoint_z");
+    }
+    if (!view.red.empty() || !view.green.empty() || !view.blue.empty()) {
+        check_column(view, "red", view.red);
+        check_column(view, "green", view.green);
+        check_column(view, "blue", view.blue);
+    }
+    if (!view.pixel.empty() && view.pixel.size() != view.size()) {
+        refuse(view, "pixel has " + std::to_string(view.pixel.size()) + " values, but x has " +
+                         std::to_string(view.size()));
+    }
+    check_image(view);
+    check_viewpoint(view);
+}
+
+bool finite(const FloatColumn& a, const FloatColumn& b, const FloatColumn& c, std::size_t i) {
+    return std::isfinite(a[i]) && std::isfinite(b[i]) && std::isfinite(c[i]);
+}
+
+// Whether all are finite. Coordinates that can't be metres are refused.
+bool all_finite(const CloudView& view) {
+    bool all = true;
+    for (std::size_t i = 0; i < view.size(); ++i) {
+        if (!finite(view.x, view.y, view.z, i)) {
+            all = false;
+            continue;
+        }
+        for (const float v : {view.x[i], view.y[i], view.z[i]}) {
+            if (std::abs(v) > farthest_m) refuse(view, io::too_far(i, v));
+        }
+    }
+    for (std::size_t i = 0; all && i < view.nx.size(); ++i)
+        all = finite(view.nx, view.ny, view.nz, i);
+    return all;
+}
+
+}  // namespace
+
+std::optional<FinitePoints> finite_points(const CloudView& view) {
+    check_arrays(view);
+    if (all_finite(view)) return {};
+    FinitePoints out;
+    PointCloud& to = out.cloud;
+    for (std::size_t i = 0; i < view.size(); ++i) {
+        if (!finite(view.x, view.y, view.z, i)) continue;
+        out.index.push_back(i);
+        to.x.push_back(view.x[i]);
+        to.y.push_back(view.y[i]);
+        to.z.push_back(view.z[i]);
+        if (view.height > 1) to.pixel.push_back(static_cast<std::uint32_t>(view.pixel_of(i)));
+        if (!view.red.empty()) {
+            to.red.push_back(view.red[i]);
+            to.green.push_back(view.green[i]);
+            to.blue.push_back(view.blue[i]);
+        }
+        if (!view.viewpoint_x.empty()) {
+            to.viewpoint_x.push_back(view.viewpoint_x[i]);
+            to.viewpoint_y.push_back(view.viewpoint_y[i]);
+            to.viewpoint_z.push_back(view.viewpoint_z[i]);
+        }
+        if (view.nx.empty()) continue;
+        const bool usable = finite(view.nx, view.ny, view.nz, i);
+        to.nx.push_back(usable ? view.nx[i] : 0);
+        to.ny.push_back(usable ? view.ny[i] : 0);
+        to.nz.push_back(usable ? view.nz[i] : 0);
+    }
+    if (to.x.empty()) {
+        refuse(view, "none of its " + std::to_string(view.size()) +
+                         " points is finite; at least one must be");
+    }
+    to.dropped = view.dropped + view.size() - to.size();
+    to.width = view.width;
+    to.height = view.height;
+    to.has_viewpoint = view.has_viewpoint;
+    to.viewpoint = view.viewpoint;
+    to.source = view.source;
+    to.notes = view.notes;
+    return out;
+}
+
+}  // namespace topple

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "points/frames_cells.h"
+
+#include <algorithm>
+
+namespace topple::geometry {
+namespace {
+
+// A block and the table that holds its cells.
+struct BlockPlace {
+    const CellTable::Block* block;
+    const CellTable* table;
+};
+
+// Blocks' keys hold their indices where cells' do.
+constexpr unsigned y_bits = key_shift[1], x_bits = key_shift[0];
+
+// A cell's place in its block, and a block's in its cube.
+std::size_t place_in_block(std::uint64_t key) {
+    return (key >> x_bits & 3) << 4 | (key >> y_bits & 3) << 2 | (key & 3);
+}
+std::size_t place_in_cube(std::uint64_t key) {
+    return (key >> (x_bits + 2) & 7) << 6 | (key >> (y_bits + 2) & 7) << 3 | (key >> 2 & 7);
+}
+
+// The first of the blocks after `begin` whose key differs above the lowest `bits` bits.
+std::size_t end_of_group(const std::vector<BlockPlace>& blocks, std::size_t begin, std::size_t end,
+                         unsigned bits) {
+    std::size_t at = begin;
+    while (at < end && blocks[at].block->key >> bits == blocks[begin].block->key >> bits) ++at;
+    return at;
+}
+
+// Asks for sums, which lie scattered, before they are read or added to.
+void prefetch(const CellSums& sums) {
+    const auto* bytes = reinterpret_cast<const char*>(&sums);
+    __builtin_prefetch(bytes);
+    __builtin_prefetch(bytes + sizeof(CellSums) - 1);
+}
+
+// Writes the cells of blocks [begin, end), which share their x, by ascending key.
+void write_slab(const std::vector<BlockPlace>& blocks, std::size_t begin, std::size_t end,
+                CellSums* out) {
+    for (std::size_t x = 0; x < 4; ++x) {
+        for (std::size_t column = begin, next = begin; column < end; column = next) {
+            next = end_of_group(blocks, column, end, y_bits);
+            for (std::size_t b = column; b < next; ++b) {
+                for (std::size_t n = 16 * x; n < 16 * (x + 1); ++n) {
+                    const std::uint32_t at = blocks[b].block->at[n];
+                    if (at != 0) prefetch(blocks[b].table->cells()[at - 1]);
+                }
+            }
+            for (std::size_t y = 0; y < 4; ++y) {
+                for (std::size_t b = column; b < next; ++b) {
+                    for (std::size_t z = 0; z < 4; ++z) {
+                        const std::uint32_t at = blocks[b].block->at[16 * x + 4 * y + z];
+                        if (at != 0) *out++ = blocks[b].table->cells()[at - 1];
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void CellSums::add(const CellSums& other) {
+    for (std::size_t a = 0; a < 3; ++a) offset[a] += other.offset[a];
+    weight += other.weight;
+    count += other.count;
+    if (other.best_weight > best_weight ||
+        (other.best_weight == best_weight && other.best_frame < best_frame)) {
+        best_weight = other.best_weight;
+        best_frame = other.best_frame;
+    }
+    if (other.colour_weight > 0) add_colour(other.colour, other.colour_weight);
+}
+
+void CellSums::add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights) {
+    constexpr std::uint32_t most_weight = UINT32_MAX / 255;
+    if (weights > most_weight - colour_weight) return;
+    for (std::size_t c = 0; c < 3; ++c) colour[c] += sums[c];
+    colour_weight += weights;
+}
+
+CellTable::Cube& CellTable::cube(std::uint64_t key) {
+    if (last_ < cubes_.size() && cubes_[last_].key == key) return cubes_[last_];
+    if (2 * (cubes_.size() + 1) > slots_.size()) grow();
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = hash(key) & mask;
+    while (slots_[at] != 0 && cubes_[slots_[at] - 1].key != key) at = (at + 1) & mask;
+    if (slots_[at] == 0) {
+        cubes_.push_back({.key = key});
+        slots_[at] = static_cast<std::uint32_t>(cubes_.size());
+    }
+    last_ = slots_[at] - 1;
+    return cubes_[last_];
+}
+
+CellTable::Block& CellTable::block(std::uint64_t key) {
+    std::uint32_t& place = cube(cube_of(key)).at[place_in_cube(key)];
+    if (place == 0) {
+        blocks_.push_back({.key = block_of(key)});
+        place = static_cast<std::uint32_t>(blocks_.size());
+    }
+    return blocks_[place - 1];
+}
+
+std::uint32_t CellTable::place_of(std::uint64_t key) {
+    Block& home = block(key);
+    std::uint32_t& place = home.at[place_in_block(key)];
+    if (place == 0) {
+        CellSums none{};
+        none.key = key;
+        cells_.push_back(none);
+        place = static_cast<std::uint32_t>(cells_.size());
+        ++home.count;
+    }
+    return place - 1;
+}
+
+void CellTable::add(std::span<const CellSums> sums, std::span<const std::uint32_t> which) {
+    for (const std::uint32_t s : which) cells_[place_of(sums[s].key)].add(sums[s]);
+}
+
+void CellTable::add(std::span<const Reading> readings, std::uint32_t frame) {
+    constexpr std::size_t at_once = 32;
+    std::array<std::uint32_t, at_once> place{};
+    for (; !readings.empty(); readings = readings.subspan(std::min(at_once, readings.size()))) {
+        const auto some = readings.first(std::min(at_once, readings.size()));
+        for (std::size_t n = 0; n < some.size(); ++n) {
+            // Mostly in the same cell as the one before.
+            if (n > 0 && some[n].key() == some[n - 1].key()) {
+                place[n] = place[n - 1];
+                continue;
+            }
+            place[n] = place_of(some[n].key());
+            prefetch(cells_[place[n]]);
+        }
+        for (std::size_t n = 0; n < some.size(); ++n) cells_[place[n]].add(some[n], frame);
+    }
+}
+
+void CellTable::grow() {
+    slots_.assign(std::max<std::size_t>(2 * slots_.size(), 256), 0);
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t cube = 0; cube < cubes_.size(); ++cube) {
+        std::size_t at = hash(cubes_[cube].key) & mask;
+        while (slots_[at] != 0) at = (at + 1) & mask;
+        slots_[at] = static_cast<std::uint32_t>(cube + 1);
+    }
+}
+
+void CellTables::add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool) {
+    std::vector<std::array<std::vector<std::uint32_t>, shard_count>> of(parts.size());
+    pool.each(parts.size(), 1, [&](std::size_t p) {
+        for (std::size_t n = 0; n < parts[p].size(); ++n)
+            of[p][shard_of(parts[p][n].key)].push_back(static_cast<std::uint32_t>(n));
+    });
+    pool.each(shard_count, 1, [&](std::size_t shard) {
+        for (std::size_t p = 0; p < parts.size(); ++p) shards[shard].add(parts[p], of[p][shard]);
+    });
+}
+
+void WaitingReadings::add(const Reading& reading, std::uint32_t frame) {
+    const std::uint64_t key = reading.key(), cube = CellTable::cube_of(key);
+    if (!last_ || cube != cube_ || last_->back().frame != frame) {
+        cube_ = cube;
+        last_ = &runs_[CellTables::shard_of(key)];
+        last_->push_back({static_cast<std::uint32_t>(readings_.size()), 0, frame});
+    }
+    ++last_->back().count;
+    readings_.push_back(reading);
+}
+
+void WaitingReadings::add_to(CellTable& table, std::size_t shard) const {
+    const std::span<const Reading> all = readings_;
+    const std::vector<Run>& runs = runs_[shard];
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        // The next run lies anywhere.
+        if (r + 1 < runs.size()) {
+            const auto next = std::as_bytes(all.subspan(runs[r + 1].first, runs[r + 1].count));
+            constexpr std::size_t line = 64, most = 32 * line;
+            for (std::size_t at = 0; at < std::min(next.size(), most); at += line)
+                __builtin_prefetch(&next[at]);
+        }
+        table.add(all.subspan(runs[r].first, runs[r].count), runs[r].frame);
+    }
+}
+
+void WaitingReadings::clear() {
+    readings_.clear();
+    for (auto& runs : runs_) runs.clear();
+    last_ = nullptr;
+}
+
+std::size_t CellTable::bytes() const {
+    return slots_.capacity() * sizeof(std::uint32_t) + cubes_.capacity() * sizeof(Cube) +
+           blocks_.capacity() * (sizeof(Block) + sizeof(BlockPlace)) +
+           cells_.capacity() * sizeof(CellSums) + cells_.size() * sizeof(CellSums);
+}
+
+std::size_t CellTables::bytes() const {
+    std::size_t sum = 0;
+    for (const CellTable& table : shards) sum += table.bytes();
+    return sum;
+}
+
+SortedCells CellTables::sorted(ThreadPool& pool) const {
+    std::vector<BlockPlace> blocks;
+    for (const CellTable& table : shards) {
+        for (const CellTable::Block& block : table.blocks()) blocks.push_back({&block, &table});
+    }
+    std::sort(blocks.begin(), blocks.end(),
+              [](const BlockPlace& a, const BlockPlace& b) { return a.block->key < b.block->key; });
+    // Slabs of blocks with one x: where each begins among the blocks and among the cells.
+    std::vector<std::size_t> slab{0}, first{0};
+    while (slab.back() < blocks.size()) {
+        const std::size_t end = end_of_group(blocks, slab.back(), blocks.size(), x_bits);
+        std::size_t count = 0;
+        for (std::size_t b = slab.back(); b < end; ++b) count += blocks[b].block->count;
+        slab.push_back(end);
+        first.push_back(first.back() + count);
+    }
+    SortedCells cells(first.back(), boost::container::default_init);
+    pool.run(slab.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end) {
+        for (std::uint64_t s = begin; s < end; ++s) {
+            write_slab(blocks, slab[s], slab[s + 1], cells.data() + first[s]);
+        }
+    });
+    return cells;
+}
+
+}  // namespace topple::geometry

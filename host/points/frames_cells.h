@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <boost/container/vector.hpp>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/thread_pool.h"
+#include "geometry/back_projection.h"
+#include "points/frames_fusion.h"
+#include "points/frames_witnesses.h"
+
+namespace topple::geometry {
+
+// A cell's key holds 21 bits of each axis' index, so that keys ascend by x, then y, then z.
+inline constexpr std::array<unsigned, 3> key_shift{42, 21, 0};
+inline constexpr std::uint64_t key_mask = 0x1FFFFF;
+inline std::uint64_t key_of(const std::array<std::uint64_t, 3>& index) {
+    return index[0] << key_shift[0] | index[1] << key_shift[1] | index[2] << key_shift[2];
+}
+// From the grid's lowest corner.
+inline std::int64_t index_in(std::uint64_t key, std::size_t axis) {
+    return static_cast<std::int64_t>(key >> key_shift[axis] & key_mask);
+}
+
+// One reading, where it waits for its table: 20 bytes.
+struct Reading {
+    std::array<std::uint32_t, 2> key_halves{};  // of its cell, the lower one first
+    std::array<std::uint16_t, 3> part{};        // 65536ths of the cell, from its lowest corner
+    std::uint16_t weight = 0;                   // inverse variance, in 65535ths of the best one's
+    std::uint32_t rgb = 0;                      // 8 bits each, red lowest; 0 where it isn't known
+    std::uint64_t key() const { return std::uint64_t{key_halves[1]} << 32 | key_halves[0]; }
+};
+
+// What the readings in one cell sum up to. Integers, so that the sums do not depend on the order in
+// which threads or frames arrive. Offsets are 1 / 65536 of a cell from its lowest corner.
+// Not initialised by itself, so that millions of them may be made where each is written.
+struct CellSums {
+    std::uint64_t key;
+    std::array<std::uint64_t, 3> offset;  // sum of weight * offset
+    std::uint64_t weight;       // sum of inverse variances, in 65535ths of the best reading's
+    std::uint32_t count;        // readings
+    std::uint32_t best_weight;  // of the best reading,
+    std::uint32_t best_frame;   // and its frame, the first of equals
+    // Of the readings whose colour is known: weight * channel, with weights of 8 bits, and those
+    // weights. What would not fit is left out: the mean of 65,000 good readings is known by then.
+    std::array<std::uint32_t, 3> colour;
+    std::uint32_t colour_weight;
+    void add(const CellSums& other);
+    void add(const Reading& reading, std::uint32_t frame);
+    void add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights);
+};
+
+inline void CellSums::add(const Reading& reading, std::uint32_t frame) {
+    const std::uint32_t w = reading.weight;
+    for (std::size_t a = 0; a < 3; ++a) offset[a] += std::uint64_t{w} * reading.part[a];
+    weight += w;
+    ++count;
+    if (w > best_weight || (w == best_weight && frame < best_frame)) {
+        best_weight = w;
+        best_frame = frame;
+    }
+    if (reading.rgb == 0) return;
+    const std::uint32_t coarse = (w + 255) >> 8;
+    add_colour({coarse * (reading.rgb & 0xFF), coarse * (reading.rgb >> 8 & 0xFF),
+                coarse * (reading.rgb >> 16 & 0xFF)},
+               coarse);
+}
+
+// Of a cell's readings along one axis, in cell_parts from its lowest corner.
+inline double mean_offset(const CellSums& cell, std::size_t axis) {
+    return static_cast<double>(cell.offset[axis]) / static_cast<double>(cell.weight);
+}
+
+// Occupied cells and their sums, found through cubes of 8 x 8 x 8 blocks of 4 x 4 x 4 cells: the
+// readings of a frame stay within few of them for long, so that most lookups touch memory just
+// touched.
+class CellTable {
+  public:
+    struct Block {
+        std::uint64_t key = 0;
+        std::uint32_t count = 0;             // of occupied cells
+        std::array<std::uint32_t, 64> at{};  // by cell, z fastest: place in cells() + 1, or 0
+    };
+    // Where the cube lies that a cell is in: the upper 16 of the 21 bits of each axis, where they
+    // lie in a key shifted by 5.
+    static std::uint64_t cube_of(std::uint64_t key) {
+        return key >> 5 & 0xFFFFu * (1 + (1ull << 21) + (1ull << 42));
+    }
+    void add(std::span<const CellSums> sums, std::span<const std::uint32_t> which);
+    // Readings of one frame.
+    void add(std::span<const Reading> readings, std::uint32_t frame);
+    const std::vector<CellSums>& cells() const { return cells_; }
+    const std::vector<Block>& blocks() const { return blocks_; }
+    // That it holds, and that sorting its cells takes besides.
+    std::size_t bytes() const;
+
+  private:
+    struct Cube {
+        std::uint64_t key = 0;
+        std::array<std::uint32_t, 512> at{};  // by block, z fastest: place in blocks() + 1, or 0
+    };
+    // The upper 19 of the 21 bits of each axis, where they lie in a key shifted by 2.
+    static std::uint64_t block_of(std::uint64_t key) {
+        return key >> 2 & 0x7FFFFu * (1 + (1ull << 21) + (1ull << 42));
+    }
+    static std::uint64_t hash(std::uint64_t key) { return key * 0x9E3779B97F4A7C15u >> 20; }
+    Cube& cube(std::uint64_t key);
+    // The cell's block, and the cell's place in cells(), with no readings where there was none.
+    Block& block(std::uint64_t key);
+    std::uint32_t place_of(std::uint64_t key);
+    void grow();
+    std::vector<std::uint32_t> slots_;  // open addressing: place in cubes_ + 1, or 0
+    std::vector<Cube> cubes_;
+    std::vector<Block> blocks_;
+    std::vector<CellSums> cells_;
+    std::size_t last_ = 0;  // the cube found last
+};
+
+using SortedCells = boost::container::vector<CellSums>;
+
+// Cells shared out over tables by their cubes, so that several threads may fill them, one per
+// table, and that neighbours are near one another in memory.
+struct CellTables {
+    // So many that the part of a table that a batch of sums meets stays in a core's cache.
+    static constexpr std::size_t shard_count = 256;
+    static std::size_t shard_of(std::uint64_t key) {
+        return CellTable::cube_of(key) * 0xD6E8FEB86659FD93u >> 56;
+    }
+    std::array<CellTable, shard_count> shards;
+    // In order, whatever the number of threads.
+    void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool);
+    // All cells by ascending key.
+    SortedCells sorted(ThreadPool& pool) const;
+    std::size_t bytes() const;
+};
+
+// Readings of some rows of frames, in the order in which they came, and the tables they go to.
+class WaitingReadings {
+  public:
+    void add(const Reading& reading, std::uint32_t frame);
+    std::size_t size() const { return readings_.size(); }
+    std::size_t bytes() const { return readings_.capacity() * sizeof(Reading); }
+    void add_to(CellTable& table, std::size_t shard) const;
+    void clear();
+
+  private:
+    // Readings of one frame in one cube, one after the other.
+    struct Run {
+        std::uint32_t first = 0, count = 0, frame = 0;
+    };
+    std::vector<Reading> readings_;
+    std::array<std::vector<Run>, CellTables::shard_count> runs_;
+    std::vector<Run>* last_ = nullptr;  // holds the run of the reading before,
+    std::uint64_t cube_ = 0;            // which lies in this cube
+};
+
+struct FrameFusion::Cells {
+    static constexpr std::size_t block_count = 16;  // of image rows
+    Cells(const Intrinsics& intrinsics, double cell_m, unsigned threads)
+        : pool(threads), projection(intrinsics, cell_m), witnesses(intrinsics) {}
+    ThreadPool pool;
+    BackProjection projection;
+    CellTables tables;
+    Witnesses witnesses;
+    std::array<WaitingReadings, block_count> waiting;
+    void flush();  // what waits to the tables, unless they come to hold more than most_bytes
+    std::size_t most_bytes = SIZE_MAX;
+    std::vector<Vec3> viewpoints;
+    std::array<std::uint64_t, block_count> outside{};  // readings beyond the grid's reach
+};
+
+// Fused cells to clean: sorted by key.
+struct FusedCells {
+    double cell_m = 0;
+    SortedCells cells;
+};
+// Drops cells of stray readings.
+void drop_weak(FusedCells& fused, std::size_t frames, ThreadPool& pool);
+// Drops cells that the frames deny.
+void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool);
+// One step of moving least squares, then bins anew: readings spread to both sides of a surface by
+// their noise become one layer. Cells whose readings spread by less than least_sigma_m stay.
+void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool);
+
+}  // namespace topple::geometry

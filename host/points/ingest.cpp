@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: MIT
+#include "points/ingest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/depth_noise.h"
+#include "core/solid_cells.h"
+#include "device/cancelling.h"
+#include "geometry/surfels.h"
+#include "io/text.h"
+#include "points/apart/read_scan.h"
+#include "points/caller_frames.h"
+#include "points/caller_points.h"
+#include "points/cloud_views.h"
+#include "points/formats/frame_sequence.h"
+#include "points/formats/octomap.h"
+#include "points/formats/read_cloud.h"
+#include "points/formats/rigid_pose.h"
+#include "points/frame_checks.h"
+#include "points/given_attributes.h"
+#include "points/limited_fusion.h"
+#include "points/memory_stream.h"
+#include "points/scale_checks.h"
+#include "points/single_scan.h"
+#include "points/work_check.h"
+#include "vdb/read_volume.h"
+
+namespace topple {
+namespace {
+
+class SequenceStream final : public FrameStream {
+  public:
+    explicit SequenceStream(io::FrameSequence sequence) : sequence_(std::move(sequence)) {}
+    const Intrinsics& intrinsics() const override { return sequence_.intrinsics(); }
+    std::size_t size() const override { return sequence_.size(); }
+    DepthFrame load(std::size_t i) const override { return sequence_.load(i); }
+    DepthFrame load_coloured(std::size_t i) const override {
+        DepthFrame frame = sequence_.load(i);
+        frame.rgb = sequence_.colours().load(i);
+        return frame;
+    }
+
+  private:
+    io::FrameSequence sequence_;
+};
+
+Vec3 position(const DepthFrame& frame) {
+    const Mat4& m = frame.camera_to_world;
+    return {m[3], m[7], m[11]};
+}
+
+std::vector<Vec3> places_of(std::span<const Mat4> poses) {
+    std::vector<Vec3> places;
+    for (const Mat4& m : poses) places.push_back({m[3], m[7], m[11]});
+    return places;
+}
+
+void note_single_frame(Ingested& out) {
+    out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
+}
+
+void note_colours(bool given, Ingested& out) {
+    if (!given) out.notes.emplace_back(no_colours_note);
+}
+
+// Fuses out.frames, called `source`. poses: as they were given, of each; none of a single frame.
+void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std::string& source,
+                 const ParseOptions& options, Ingested& out) {
+    const Intrinsics& k = out.frames->intrinsics();
+    out.by_sensors = true;
+    // Before anything is made of them.
+    check_camera_steps(places_of(poses), source);
+    const double depth_m =
+        typical_depth(k, out.frames->size(), [&](std::size_t f) { return out.frames->load(f); });
+    check_readings(k, out.frames->size(), depth_m, source, out.origin);
+    out.cell_m = cell_for_frames(k, depth_m);
+    LimitedFusion fusion({k, out.frames->size(), depth_m, source, out.origin}, out.cell_m, options,
+                         device.threads().threads());
+    geometry::PoseComparison comparison(k, poses, depth_m);
+    const auto count = static_cast<double>(out.frames->size());
+    constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
+    const auto tell = [&](double done) {
+        if (options.progress) options.progress("ingest", done);
+    };
+    const auto add = [&](const DepthFrame& frame, std::size_t f) {
+        end_if_cancelled(options);
+        fusion.add(frame);
+        comparison.add(frame, f);
+        tell(added_share * static_cast<double>(f + 1) / count);
+    };
+    for_each_frame(*out.frames, device.threads(), add, true);
+    note_principal_point(k, out.origin, out.doubts);
+    // First, and at once: the shards that such poses give take long.
+    if (const std::string note = pose_note(comparison, poses.size(), out.origin); !note.empty()) {
+        out.doubts.insert(out.doubts.begin(), note);
+        if (options.notice) options.notice(note);
+    }
+    double polled = 0;
+    geometry::FusedCloud fused = fusion.finish([&] {
+        end_if_cancelled(options);
+        tell(added_share + (1 - added_share) * std::min(1.0, ++polled / polls));
+    });
+    out.own = std::move(fused.cloud);
+    out.cloud = out.own;
+    out.viewpoints = std::move(fused.viewpoints);
+    out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
+    if (poses.empty()) note_single_frame(out);
+    note_colours(!out.cloud.red.empty(), out);
+}
+
+Ingested ingest_folder(device::Device& device, const std::filesystem::path& folder,
+                       const ParseOptions& options) {
+    io::FrameSequence sequence = io::FrameSequence::open(folder);
+    Ingested out;
+    out.origin = ScanOrigin::frames_folder;
+    out.camera_up = sequence.mean_camera_up();
+    out.doubts = sequence.colours().notes();
+    std::vector<Mat4> poses;
+    for (std::size_t i = 0; sequence.posed() && i < sequence.size(); ++i)
+        poses.push_back(sequence.camera_to_world(i));
+    out.frames = std::make_unique<SequenceStream>(std::move(sequence));
+    fuse_frames(device, poses, folder.string(), options, out);
+    return out;
+}
+
+}  // namespace
+
+double typical_depth(const Intrinsics& k, std::size_t count,
+                     const std::function<DepthFrame(std::size_t)>& load) {
+    std::vector<double> depths;
+    const std::size_t step = std::max<std::size_t>(1, count / 8);
+    for (std::size_t f = 0; f < count; f += step) {
+        const DepthFrame frame = load(f);
+        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
+            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
+        }
+    }
+    if (depths.empty()) return 0;
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    return depths[depths.size() / 2];
+}
+
+double cell_for_frames(const Intrinsics& k, double typical_depth_m) {
+    if (typical_depth_m <= 0) return 0.01;
+    const double noise = depth_sigma(typical_depth_m);
+    return std::clamp(std::max(1.5 * typical_depth_m / k.fx, 1.2 * noise), least_cell_m, 0.015);
+}
+
+std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin) {
+    const Intrinsics& k = frames.intrinsics();
+    return depth_scale_hint(
+        frames.size(), k.depth_scale,
+        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); }), origin);
+}
+
+void for_each_frame(const FrameStream& frames, ThreadPool& threads,
+                    const std::function<void(DepthFrame, std::size_t)>& use, bool coloured) {
+    const auto load = [&](std::size_t i) {
+        return coloured ? frames.load_coloured(i) : frames.load(i);
+    };
+    if (frames.one_by_one()) {
+        for (std::size_t i = 0; i < frames.size(); ++i) use(load(i), i);
+        return;
+    }
+    struct Decoded {
+        DepthFrame frame;
+        std::exception_ptr error;
+    };
+    for (std::size_t first = 0; first < frames.size(); first += threads.threads()) {
+        std::vector<Decoded> batch(std::min<std::size_t>(threads.threads(), frames.size() - first));
+        threads.each(batch.size(), 1, [&](std::size_t i) {
+            try {
+                batch[i].frame = load(first + i);
+            } catch (...) {
+                batch[i].error = std::current_exception();
+            }
+        });
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            if (batch[i].error) std::rethrow_exception(batch[i].error);
+            use(std::move(batch[i].frame), first + i);
+        }
+    }
+}
+
+namespace {
+
+void check_count(const CloudView& cloud) {
+    if (cloud.size() >= least_voxels) return;
+    if (cloud.size() == 0) throw Error(ErrorKind::input, cloud.source + ": has no points");
+    throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
+                                      (cloud.size() == 1 ? " point was" : " points were") +
+                                      " found, but the smallest solid takes " +
+                                      std::to_string(least_voxels) + "; give a denser scan");
+}
+
+// What of normals and colours contradicts the points around is not used. Colours stay in the
+// output.
+void check_attributes(double around_m, Ingested& out) {
+    const geometry::GivenAttributes given = geometry::look_at_attributes(out.cloud, around_m);
+    const auto percent = [](double share) {
+        return std::to_string(std::lround(100 * share)) + " %";
+    };
+    if (given.normals_contradict()) {
+        out.doubts.push_back(
+            "The normals that were given contradict the points: " + percent(given.askew) +
+            " are far off the direction of the surface, and of the others " +
+            percent(given.opposed) +
+            " face another side than those around them. They were left out, and the sides of "
+            "surfaces estimated.");
+        leave_out_normals(out);
+    }
+    if (out.cloud.red.empty() || given.colours_tell()) return;
+    out.doubts.emplace_back(
+        given.one_colour ? "All points have one colour, which tells nothing: it was left out."
+                         : "The colours that were given differ between neighbouring points as much "
+                           "as between any others: they were left out.");
+    out.cloud.red = out.cloud.green = out.cloud.blue = {};
+}
+
+// All that follows from the points.
+void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested& out) {
+    const CloudView& cloud = out.cloud;
+    check_count(cloud);
+    const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
+    check_spacing(cloud, spacing.nearest_m, out.origin);
+    // First, and at once: what is large takes long.
+    const bool mesh = out.origin == ScanOrigin::mesh_file;
+    const std::string hint = unit_hint(cloud, mesh ? INFINITY : spacing.nearest_m, out.origin);
+    if (!hint.empty() && options.notice) options.notice(hint);
+    // A little above the spacing, so that a surface has no holes at this resolution.
+    constexpr double cell_pitches = 1.25;
+    out.cell_m = std::clamp(cell_pitches * spacing.nearest_m, least_cell_m, largest_cell_m);
+    out.sparse_cell_m = std::max(out.cell_m, cell_pitches * spacing.surface_m);
+    out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
+    out.doubts = cloud.notes;
+    if (!hint.empty()) out.doubts.insert(out.doubts.begin(), hint);
+    // A depth image's gaps are no news.
+    if (cloud.dropped > 0 && cloud.height <= 1)
+        out.notes.push_back(io::counted(cloud.dropped, "point") + " of " +
+                            std::to_string(cloud.dropped + cloud.size()) +
+                            (cloud.dropped == 1 ? " was" : " were") + " not finite and left out.");
+    if (cloud.height <= 1) note_spacing(spacing.around_m, out.notes);
+    check_attributes(spacing.around_m, out);
+    Intrinsics intrinsics;
+    DepthFrame frame;
+    if (cloud.height > 1 && geometry::frame_of_organised_cloud(cloud, intrinsics, frame)) {
+        out.viewpoints = {position(frame)};
+        const Mat4& pose = frame.camera_to_world;
+        out.camera_up = Vec3{-pose[1], -pose[5], -pose[9]};
+        std::vector<DepthFrame> frames;
+        frames.push_back(std::move(frame));
+        out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
+        out.by_sensors = true;
+        note_single_frame(out);
+        return;
+    }
+    std::optional<geometry::SingleScan> scan;
+    if (cloud.viewpoint_x.empty()) {
+        scan = geometry::find_single_scan(
+            cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
+    }
+    // Reading it took the rest of the stage.
+    constexpr double read_share = 0.2;
+    const auto tell = [&](double done) {
+        if (options.progress) options.progress("ingest", read_share + (1 - read_share) * done);
+    };
+    if (Budget* budget = Budget::current()) check_surface(out, spacing.around_m, options, *budget);
+    look_from_free_places(device, scan, spacing, tell, out);
+}
+
+}  // namespace
+
+void leave_out_normals(Ingested& input) {
+    input.cloud.nx = input.cloud.ny = input.cloud.nz = {};
+    input.own.nx = input.own.ny = input.own.nz = {};
+}
+
+void check_path(const std::filesystem::path& input) {
+    if (input.empty())
+        throw Error(ErrorKind::usage,
+                    "the path of the input is empty; give that of a file, or of a folder of depth "
+                    "frames");
+}
+
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
+                      ScanOrigin origin) {
+    Ingested out;
+    out.origin = origin;
+    out.own = std::move(cloud);
+    if (out.own.height > 1) {
+        out.image_width = out.own.width;
+        out.image_height = out.own.height;
+        if (out.own.dropped > 0) out.index.assign(out.own.pixel.begin(), out.own.pixel.end());
+    }
+    out.cloud = out.own;
+    look_at_cloud(device, options, out);
+    return out;
+}
+
+Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options) {
+    if (options.unit_m != 1) {
+        throw Error(ErrorKind::usage,
+                    "ParseOptions::unit_m is for files; scale a cloud in memory to metres before "
+                    "it is parsed");
+    }
+    Ingested out;
+    out.origin = ScanOrigin::cloud_in_memory;
+    out.cloud = cloud;
+    if (out.cloud.source.empty()) out.cloud.source = "cloud";
+    if (std::optional<FinitePoints> finite = finite_points(out.cloud)) {
+        out.own = std::move(finite->cloud);
+        out.index = std::move(finite->index);
+        out.cloud = out.own;
+    }
+    check_viewpoint_distance(out.cloud);
+    out.given_colours = {out.cloud.red, out.cloud.green, out.cloud.blue};
+    look_at_cloud(device, options, out);
+    note_colours(!out.given_colours[0].empty(), out);
+    return out;
+}
+
+Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
+                            const ParseOptions& options) {
+    if (options.unit_m != 1) {
+        throw Error(ErrorKind::usage,
+                    "ParseOptions::unit_m is for files; depth frames have their unit in their "
+                    "intrinsics, as "
+                    "depth_scale");
+    }
+    auto stream = std::make_unique<CallerFrames>(frames);
+    const CallerFrames& given = *stream;  // lives as long as what is returned
+    Ingested out;
+    out.origin = ScanOrigin::frames_in_memory;
+    out.camera_up = io::mean_camera_up(given.poses());
+    out.doubts = given.notes();
+    out.frames = std::move(stream);
+    fuse_frames(device, given.posed() ? std::span(given.poses()) : std::span<const Mat4>(),
+                given.source(), options, out);
+    if (out.cloud.size() == 0)
+        throw Error(ErrorKind::input, given.source() + ": no points were found; " +
+                                          depth_scale_hint(given, out.origin));
+    return out;
+}
+
+Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
+    Ingested out;
+    out.cell_m = cell_m;
+    out.own = std::move(cloud);
+    out.cloud = out.own;
+    look_from_free_places(device, out);
+    return out;
+}
+
+namespace {
+
+// The map's own axes, of which up is the third, so that its voxels and the grid's are the same;
+// none where up lies askew to them.
+std::optional<geometry::SceneFrame> frame_of_map(const std::optional<Vec3>& given_up) {
+    const Vec3 up = given_up.value_or(Vec3{0, 0, 1});
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (std::abs(up[a]) < 1 - 1e-6) continue;
+        geometry::SceneFrame frame{};
+        const double sign = up[a] > 0 ? 1 : -1;
+        frame.axes[0][(a + 1) % 3] = 1;
+        frame.axes[1][(a + 2) % 3] = sign;
+        frame.axes[2][a] = sign;
+        frame.up_method = given_up ? "given" : "map";
+        return frame;
+    }
+    return std::nullopt;
+}
+
+// A volume's surface, and its free space beside what virtual views of the surface find.
+Ingested ingest_volume(device::Device& device, ScannedMap map, const ParseOptions& options) {
+    Ingested out;
+    out.origin = ScanOrigin::map_file;
+    out.own = std::move(map.cloud);
+    out.cloud = out.own;
+    look_at_cloud(device, options, out);
+    if (!map.space.free.empty()) out.space = std::move(map.space);
+    return out;
+}
+
+// An OctoMap: what is free and what nobody saw is known, and its voxels are the grid's.
+Ingested ingest_octomap(ScannedMap map, const ParseOptions& options) {
+    Ingested out;
+    out.origin = ScanOrigin::map_file;
+    out.own = std::move(map.cloud);
+    out.cloud = out.own;
+    check_count(out.cloud);
+    check_spacing(out.cloud, map.space.voxel_m);
+    out.doubts = out.own.notes;
+    out.voxel_m = map.space.voxel_m;
+    // Surfels are the map's voxels: other cells would hold now one layer of them, now two.
+    out.cell_m = out.voxel_m / surfel_cells;
+    out.frame = frame_of_map(options.up);
+    if (!out.frame || (options.voxel_m > 0 && options.voxel_m != out.voxel_m)) {
+        out.notes.push_back(
+            "The voxels are not the map's own, because another up or voxel size was asked for: "
+            "its free space was taken at their centres.");
+    }
+    out.space = std::move(map.space);
+    return out;
+}
+
+}  // namespace
+
+ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& options) {
+    const auto poll = [&] { end_if_cancelled(options); };
+    return options.isolate ? reader::read_scan_apart(file, options.unit_m, poll)
+                           : reader::read_scan(file, options.unit_m, poll);
+}
+
+Ingested ingest(device::Device& device, const std::filesystem::path& input,
+                const ParseOptions& options) {
+    if (options.progress) options.progress("ingest", 0);
+    if (io::looks_like_sequence(input)) {
+        if (options.unit_m != 1) {
+            throw Error(ErrorKind::usage,
+                        "ParseOptions::unit_m is for point clouds, meshes and maps; depth frames "
+                        "have their unit in "
+                        "intrinsics.json, as depth_scale");
+        }
+        Ingested out = ingest_folder(device, input, options);
+        if (out.cloud.size() == 0)
+            io::fail(input, "no points were found; " + depth_scale_hint(*out.frames, out.origin));
+        return out;
+    }
+    ScannedMap map = read_input(input, options);
+    if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
+    if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map), options);
+    const bool mesh = io::is_mesh(input);
+    Ingested out = ingest_cloud(device, std::move(map.cloud), options,
+                                mesh ? ScanOrigin::mesh_file : ScanOrigin::cloud_file);
+    if (!mesh) note_colours(!out.own.red.empty(), out);
+    out.format_up = io::up_of_format(input);
+    return out;
+}
+
+}  // namespace topple

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+#include "result/sentences.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "io/text.h"
+#include "physics/drop.h"
+#include "result/explain.h"
+#include "safety/action.h"
+#include "safety/disturbances.h"
+#include "safety/largest_risk.h"
+
+namespace topple {
+namespace {
+
+std::string length(double metres) {
+    return metres < 0.1 ? io::two_digits(100 * metres) + " cm" : io::two_digits(metres) + " m";
+}
+std::string energy(double joules) {
+    return joules < 0.01 && joules > 5e-7 ? io::two_digits(1000 * joules) + " mJ"
+                                          : io::two_digits(joules) + " J";
+}
+
+std::string compass(double azimuth_deg) {
+    constexpr std::array names{"north", "north-east", "east", "south-east",
+                               "south", "south-west", "west", "north-west"};
+    return names[static_cast<std::size_t>(std::lround(azimuth_deg / 45)) % names.size()];
+}
+
+// "object 3", or "object 3 (fridge)".
+std::string numbered_object(const Object& o) {
+    const std::string text = "object " + std::to_string(o.id);
+    return o.name.empty() ? text : text + " (" + o.name + ")";
+}
+
+constexpr const char* floor = "the floor";
+constexpr double step_m = 0.05;  // a floor that is lower by less is the same one, not quite level
+
+// What a primitive is to those in the room; of the building, which part of it.
+std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
+    if (primitive < 0) return "what is there";
+    const auto at = static_cast<std::size_t>(primitive);
+    const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
+    if (!object.grounded) return numbered_object(object);
+    switch (parts.solids->role(primitive)) {
+        case Role::floor:
+            return floor;
+        case Role::wall:
+            return "a wall";
+        case Role::ceiling:
+            return "the ceiling";
+        default:
+            return "what is built in";
+    }
+}
+
+class Sentence {
+  public:
+    Sentence(const Scene& scene, const SolidParts& parts, const ObjectStage& objects,
+             const physics::Swept& swept, std::size_t o)
+        : scene_(scene),
+          parts_(parts),
+          objects_(objects),
+          swept_(swept),
+          from_(objects.objects[o]),
+          object_(scene.objects[o]),
+          why_(object_.why) {}
+
+    std::string text() const {
+        if (object_.grounded) {
+            return "It is counted as the building, or as fixed to it, and is not judged here: what "
+                   "of it is furniture has to be told.";
+        }
+        if (!from_.seen_enough()) {
+            return "The scan does not show what holds it up: it is taken to stand there, and is "
+                   "not ranked.";
+        }
+        return (object_.mode == "slide" ? slides() : tips()) + foot() + piece() + several();
+    }
+
+  private:
+    // Which is more than what was seen of it.
+    std::string foot() const {
+        return from_.unseen_margin_m > 0 && barrier_within_error(object_)
+                   ? " Part of its foot, as a leg, may stand where nobody saw in."
+                   : "";
+    }
+    // Whose figures are those of a piece.
+    std::string piece() const {
+        if (object_.piece_of < 0) return "";
+        const Object& whole = scene_.objects[static_cast<std::size_t>(object_.piece_of)];
+        return " It may be a piece of " + numbered_object(whole) + " (" +
+               io::two_digits(100 * object_.piece_probability) + " % likely).";
+    }
+    // Whose figures are those of two together.
+    std::string several() const {
+        if (!from_.weakest.doubtful()) return "";
+        return " It may be two things (" + io::two_digits(100 * (1 - object_.joint_probability)) +
+               " % likely): look whether its parts " + std::to_string(object_.weakest_joint[0]) +
+               " and " + std::to_string(object_.weakest_joint[1]) + " are one.";
+    }
+    std::string slides() const {
+        if (!(why_.way_m > 0)) {
+            return "Its centre of mass is past the edge of what carries it: it falls " + dropped() +
+                   " and releases " + energy(why_.S_J) + ".";
+        }
+        const std::string off = carrier();
+        if (off == floor && what(scene_, parts_, from_.instability.onto) == floor &&
+            why_.drop_m < step_m) {
+            return "Slides " + to() + "on the floor at " + barrier() + ", over " +
+                   length(why_.way_m) + ", to where it stands " + length(why_.drop_m) +
+                   " lower, and releases " + energy(why_.S_J) + ".";
+        }
+        return "Slides " + to() + "off " + off + " at " + barrier() + ", over " +
+               length(why_.way_m) + "; falls " + dropped() + " and releases " + energy(why_.S_J) +
+               ".";
+    }
+    std::string tips() const {
+        const bool stands = from_.tipping.margin_m > 0;
+        std::string text;
+        if (!why_.edge_m.empty() && !stands && why_.W_J > 0) {
+            // It would come to rest no lower there: the first step that releases is another one.
+            text = "Its centre of mass is " + length(-from_.tipping.margin_m) +
+                   " beyond the edge of what is seen to carry it, but falling there it would rest "
+                   "no lower. Tips over its " +
+                   edge() + " at " + barrier();
+        } else if (!why_.edge_m.empty() && !stands) {
+            text = "Falls " + to() + "as it stands: its centre of mass is " +
+                   length(-from_.tipping.margin_m) + " beyond the edge of what carries it";
+        } else if (!why_.edge_m.empty()) {
+            text = "Tips over its " + edge() + " at " + barrier();
+        } else {
+            text = "Rolls or turns " + to() + "by itself";
+        }
+        if (!(object_.release_J > 0)) {
+            text += stopped_for_good() ? ", but leans on " + stop() + " before it has come so far"
+                                       : ", but then rests no lower";
+            text += ": it releases nothing.";
+            const std::string harder = harder_way();
+            if (harder.empty()) return text;
+            return harder + io::lower_case(text.substr(0, 1)) + text.substr(1);
+        }
+        if (swept_.stopped) return text + leans();
+        return text + "; " + (why_.drop_m > 0 ? "falls " + dropped() : "comes to rest lower") +
+               " and releases " + energy(why_.S_J) + ".";
+    }
+    // What more energy sets free, which its risk reckons with, before the easiest way.
+    std::string harder_way() const {
+        const auto first = std::ranges::find_if(
+            object_.instability, [](const InstabilityStep& step) { return step.S_J > 0; });
+        if (first == object_.instability.end()) return "";
+        return "With " + energy(first->W_J) + " or more it may fall and release up to " +
+               energy(object_.instability.back().S_J) + ". The easiest way: ";
+    }
+    // By the building, which does not give way.
+    bool stopped_for_good() const {
+        if (!swept_.stopped || swept_.by < 0) return false;
+        const std::int32_t by = scene_.primitives[static_cast<std::size_t>(swept_.by)].object;
+        return scene_.objects[static_cast<std::size_t>(by)].grounded;
+    }
+    std::string stop() const { return what(scene_, parts_, swept_.by); }
+    // Against anything else its release and risk are those of a fall with room.
+    std::string leans() const {
+        std::string text =
+            "; comes to lean on " + stop() + ", with " + energy(object_.fall.hits_J) + ".";
+        if (stopped_for_good()) return text;
+        return text + " If that gave way it would " +
+               (why_.drop_m > 0 ? "fall " + dropped() : "come to rest lower") + " and release " +
+               energy(why_.S_J) + ", which its risk reckons with.";
+    }
+    // What it slides off. Of the building the part that carries most of it.
+    std::string carrier() const {
+        if (why_.stands_on.size() != 1) return "what carries it";
+        const Object& on = scene_.objects[static_cast<std::size_t>(why_.stands_on[0])];
+        if (!on.grounded) return numbered_object(on);
+        const auto object_of = [&](std::int32_t p) {
+            return p < 0 ? -1 : objects_.object_of_primitive[static_cast<std::size_t>(p)];
+        };
+        const graph::Carrying* most = nullptr;
+        for (const graph::Carrying& c : objects_.contacts.carryings) {
+            if (object_of(c.supported) == object_.id && object_of(c.supporter) == on.id &&
+                (!most || c.area_m2 > most->area_m2))
+                most = &c;
+        }
+        return most ? what(scene_, parts_, most->supporter) : "what carries it";
+    }
+    std::string barrier() const {
+        if (!barrier_within_error(object_)) return energy(why_.W_J);
+        return "between 0 and " + energy(object_.barrier_J + object_.barrier_error_J);
+    }
+    std::string to() const {
+        return std::isnan(why_.azimuth_deg) ? "" : "to the " + compass(why_.azimuth_deg) + " ";
+    }
+    // An edge no longer than a voxel or two is a corner, or one of a round thing's many.
+    std::string edge() const {
+        const std::string side =
+            std::isnan(why_.azimuth_deg) ? "" : compass(why_.azimuth_deg) + " ";
+        const Vec3 &a = why_.edge_m[0], &b = why_.edge_m[1];
+        const double size = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+        if (size <= 2.5 * scene_.voxel_size_m) return side + "rim";
+        return side + "edge, " + length(size) + " long,";
+    }
+    std::string dropped() const {
+        return length(why_.drop_m) + " to " + what(scene_, parts_, from_.instability.onto);
+    }
+
+    const Scene& scene_;
+    const SolidParts& parts_;
+    const ObjectStage& objects_;
+    const physics::Swept& swept_;
+    const StableObject& from_;
+    const Object& object_;
+    const Why& why_;
+};
+
+constexpr double light_kg = 5;  // one carries it away rather than fastens it
+
+std::string joules(double value) {
+    return value < 0.0005 ? "nothing" : energy(value) + " per event";
+}
+
+// Against what brings it the most risk, the first of equals; where no wall is within reach, to what
+// it stands on.
+std::string mend_of(const Object& object, const Fastening& to) {
+    if (!to.wall && to.floor) return "Bolt it to the floor, keep people away, or take it out";
+    const safety::DisturbanceKind* worst = safety::largest_risk(object).kind;
+    const auto& words = (worst != nullptr ? worst : safety::disturbance_kinds().front())->words;
+    return to.wall || std::string_view(words.mend).find("the wall") == std::string_view::npos
+               ? words.mend
+               : "Fasten it to what carries it";
+}
+
+// The least of 1, 2, 5, 10, 20, ... kilograms whose weight is no less than the force: how straps
+// and brackets are sold.
+std::string rated_for(double force_N) {
+    const double kg = force_N / physics::gravity;
+    double decade = 1;
+    while (10 * decade < kg) decade *= 10;
+    for (const double step : {1, 2, 5})
+        if (step * decade >= kg) return io::short_number(step * decade) + " kg";
+    return io::short_number(10 * decade) + " kg";
+}
+
+// What is to be held at least, rounded up: "154", "2.8".
+std::string at_least_N(double force_N) {
+    const double steps = force_N < 10 ? 10 : 1;
+    return io::two_digits(std::ceil(force_N * steps - 1e-9) / steps);
+}
+
+std::string fix_sentence(const Object& object, const Suggestion& what) {
+    constexpr double one_strap_m = 1;  // what is wider turns about a single one; set by hand
+    const bool light = object.mass_kg < light_kg, bolted = !what.fasten.wall && what.fasten.floor;
+    std::string text = mend_of(object, what.fasten);
+    if (light) text = what.leg_of < 0 ? "Put it elsewhere, or fasten it" : "Fasten it";
+    if (!(what.hold.force_N > 0)) return text + ".";
+    const safety::DisturbanceKind* kind = safety::find_disturbance_kind(what.hold_against);
+    const std::string holds = at_least_N(what.hold.force_N) + " N sideways at least" +
+                              (kind ? std::string(", ") + kind->words.push : "") +
+                              ", without a margin";
+    const std::string where =
+        "at its top, " + length(what.hold.height_m) + " above what it stands on";
+    if (bolted && !light) return text + ": " + where + ", it must be held against " + holds + ".";
+    const std::string rated = "rated for " + rated_for(what.hold.force_N) + " or more (";
+    if (what.fasten.wall && std::max(object.size_m[0], object.size_m[1]) > one_strap_m)
+        return text + ", with two straps or brackets, at studs of the wall, each " + rated +
+               "together they must hold " + holds + "), " + where + ".";
+    return text + ", with a strap or bracket " + rated + "it must hold " + holds + "), " + where +
+           ".";
+}
+
+std::string plain_advice(const Object& object, const Suggestion& what) {
+    switch (what.kind) {
+        case Suggestion::Kind::nothing:
+            break;
+        case Suggestion::Kind::see:
+            return "See what holds it: the scan does not show it, and its risk is not known.";
+        case Suggestion::Kind::check:
+            return "Look whether it stands firm: what the scan shows of its support would hardly "
+                   "hold it, and its risk follows from that.";
+        case Suggestion::Kind::move: {
+            std::string text = "Move it " + length(std::hypot(what.move_m[0], what.move_m[1])) +
+                               " to the " + compass(azimuth_deg(what.move_m));
+            if (!object.fall.takes_along.empty()) text += ", with what stands on it";
+            return text + ": its risk falls from " + joules(safety::largest_risk(object).risk_J) +
+                   " to " + joules(what.risk_J) + ".";
+        }
+        case Suggestion::Kind::fix:
+            return fix_sentence(object, what);
+    }
+    return "";
+}
+
+std::string advice_sentence(const Scene& scene, const Object& object, const Suggestion& what) {
+    std::string text = plain_advice(object, what);
+    if (what.leg_of < 0 || text.empty()) return text;
+    const Object& top = scene.objects[static_cast<std::size_t>(what.leg_of)];
+    return "Look first: this may be a leg of " + numbered_object(top) +
+           ". If it is none: " + io::lower_case(text.substr(0, 1)) + text.substr(1);
+}
+
+}  // namespace
+
+void tell_why(const SolidParts& parts, const ObjectStage& objects,
+              std::span<const Landing> landings, Scene& scene) {
+    const physics::Swept free{};
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+        const physics::Swept& swept = o < landings.size() ? landings[o].easiest : free;
+        scene.objects[o].why.sentence = Sentence(scene, parts, objects, swept, o).text();
+    }
+}
+
+void tell_advice(std::span<const Suggestion> suggestions, Scene& scene) {
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+        Object& object = scene.objects[o];
+        if (object.grounded) continue;
+        object.advice.sentence = advice_sentence(scene, object, suggestions[o]);
+        object.advice.action = safety::action_text(scene, object);
+    }
+}
+
+}  // namespace topple

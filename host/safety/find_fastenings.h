@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "objects/object_stage.h"
+#include "safety/fastening.h"
+#include "solids/solid_parts.h"
+
+namespace topple {
+
+// By object. Brackets and straps at its top reach 0.3 m to a wall, be it seen or behind what hides
+// it, or to what is fixed to one.
+std::vector<Fastening> find_fastenings(const SolidParts& parts, const ObjectStage& objects);
+
+}  // namespace topple

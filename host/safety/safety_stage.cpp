@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "safety/safety_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "objects/legs.h"
+#include "physics/overturning.h"
+#include "safety/disturbances.h"
+#include "safety/find_fastenings.h"
+#include "safety/risk_error.h"
+#include "safety/wind/wind_field.h"
+
+namespace topple {
+namespace {
+
+// Least width of a convex polygon: over its edges, the reach of the corner furthest from the edge.
+double least_width(const std::vector<std::array<double, 2>>& polygon) {
+    if (polygon.size() < 3) return 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t e = 0; e < polygon.size(); ++e) {
+        const auto& a = polygon[e];
+        const auto& b = polygon[(e + 1) % polygon.size()];
+        const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+        if (length <= 0) continue;
+        double reach = 0;
+        for (const auto& p : polygon) {
+            reach = std::max(
+                reach,
+                std::abs((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / length);
+        }
+        least = std::min(least, reach);
+    }
+    return least;
+}
+
+safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& objects) {
+    safety::Surroundings s;
+    const SolidScene& solids = *parts.solids;
+    s.cells = &solids.cells();
+    for (const std::int32_t p : solids.cells().primitive) {
+        s.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
+    }
+    for (std::size_t p = 0; p < solids.primitives(); ++p)
+        s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
+    for (const physics::Body& b : objects.bodies)
+        s.density_kg_m3.push_back(b.volume_m3 > 0 ? b.mass_kg / b.volume_m3 : 0);
+    return s;
+}
+
+}  // namespace
+
+std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objects) {
+    std::vector<safety::RiskObject> out;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const StableObject& o = objects[i];
+        safety::RiskObject r;
+        r.id = static_cast<std::int32_t>(i);
+        // What is held by nothing that was seen is held by what was not: nobody knows how firmly.
+        r.grounded = o.grounded || !o.seen_enough() || o.candidate.support_polygon.empty();
+        r.mass_kg = o.candidate.body.mass_kg;
+        r.barrier_J = o.instability.barrier_J;
+        r.barrier_error_J = o.seen_error_J;
+        r.mass_error_share = r.mass_kg > 0 ? o.body_error.mass_kg / r.mass_kg : 0;
+        r.center_height_m = o.candidate.body.center[2] - o.candidate.support_height_m;
+        r.slides = o.instability.mode == "slide" && o.sliding.found;
+        r.base_m = o.candidate.support_height_m;
+        r.center = o.candidate.body.center;
+        r.height_m = o.box.top_m() - r.base_m;
+        r.base_width_m = least_width(o.candidate.support_polygon);
+        r.base_error_share = physics::slope_error_share(o.overturning);
+        if (o.sliding.found) {
+            r.slide_distance_m = o.sliding.distance_m;
+            r.drop_m = o.sliding.drop_m;
+        }
+        r.curve = o.instability.curve;
+        r.toppling = o.toppling;
+        r.support_polygon = o.candidate.support_polygon;
+        out.push_back(std::move(r));
+    }
+    return out;
+}
+
+namespace {
+
+// Risks, and what the errors of barriers and masses make of them and of the categories.
+void weigh_risks(std::span<const safety::RiskObject> at_risk, SafetyStage& out) {
+    const auto weaker = safety::at_end(at_risk, -1), firmer = safety::at_end(at_risk, 1);
+    out.category.resize(at_risk.size());
+    for (safety::Disturbance& d : out.disturbances) {
+        out.risk.push_back(safety::risk(d, at_risk));
+        const auto lower = safety::risk_if(d, weaker), higher = safety::risk_if(d, firmer);
+        d.work_if = {};  // it refers to the field
+        std::vector<double> error_J;
+        for (std::size_t o = 0; o < at_risk.size(); ++o) {
+            const double share = at_risk[o].mass_error_share;
+            error_J.push_back(
+                safety::risk_error_J(out.risk.back()[o], {lower[o], higher[o]}, share));
+            safety::CategoryEnds& ends = out.category[o];
+            ends.lower = std::max(ends.lower, safety::category(lower[o], 1 + share));
+            ends.measured = std::max(ends.measured, safety::category(out.risk.back()[o], 1));
+            ends.higher =
+                std::max(ends.higher, safety::category(higher[o], std::max(0.0, 1 - share)));
+        }
+        out.risk_error_J.push_back(std::move(error_J));
+    }
+    out.unsafety = safety::unsafety(out.risk);
+    out.unsafety.resize(at_risk.size(), 1.0);
+}
+
+}  // namespace
+
+SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
+                          const ObjectStage& objects, const ParseOptions& options,
+                          StageClock& stage) {
+    SafetyStage out;
+    const std::vector<safety::RiskObject> at_risk = risk_objects(objects.objects);
+    const safety::Surroundings around = surroundings(parts, objects);
+    std::vector<std::unique_ptr<safety::DisturbanceField>> fields;
+    for (const std::string& name : options.disturbances) {
+        const safety::DisturbanceKind& kind = safety::disturbance_kind(name);
+        out.disturbances.push_back(stage("field " + name, [&] {
+            fields.push_back(kind.field(device, around, at_risk, options));
+            return fields.back()->disturbance();
+        }));
+    }
+    stage("falls", [&] {
+        out.landings = landings(parts, objects);
+        std::vector<safety::FallZone> zones;
+        for (const Landing& landing : out.landings) zones.push_back(landing.zone);
+        for (const auto& field : fields) {
+            const std::vector<double> shares = field->passing_shares(zones);
+            if (!shares.empty()) out.people_share = shares;
+        }
+    });
+    out.gust_m_s = stage("gusts", [&] {
+        for (const safety::Disturbance& disturbance : out.disturbances)
+            if (!disturbance.gust_m_s.empty()) return disturbance.gust_m_s;
+        return safety::tipping_gusts(device, around, at_risk, {});
+    });
+    stage("risk", [&] { weigh_risks(at_risk, out); });
+    stage("advice", [&] {
+        out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
+                            out.disturbances, out.risk, fields, options.friction,
+                            options.tolerable_J, unseen_of(parts));
+        const std::vector<Fastening> fastenings = find_fastenings(parts, objects);
+        const std::vector<std::int32_t> legs =
+            find_legs(*parts.solids, objects.object_of_primitive, objects.objects);
+        for (std::size_t o = 0; o < out.advice.size(); ++o) {
+            out.advice[o].fasten = fastenings[o];
+            out.advice[o].leg_of = legs[o];
+        }
+    });
+    return out;
+}
+
+}  // namespace topple

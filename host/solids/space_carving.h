@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <span>
+#include <thread>
+
+#include "device/device.h"
+#include "device/stage_clock.h"
+#include "geometry/surface_gaps.h"
+#include "points/ingest.h"
+#include "vdb/voxel_scene.h"
+
+// Visibility carving (paper, 2.2.2): what depth frames say about the voxels.
+namespace topple {
+
+// The surface voxels of a scan, and of the others those that its frames saw through. Where nothing
+// that is found out later has a say in which voxels hold points, they are carved beside the stages
+// in between, on a thread of its own. Until finish() nobody else may use the device, but for its
+// threads.
+class SpaceCarving {
+  public:
+    // The input must stay as long as this.
+    SpaceCarving(device::Device& device, const Ingested& input, const vdb::VoxelFrame& frame);
+    // Ends what goes on beside.
+    ~SpaceCarving();
+    SpaceCarving(const SpaceCarving&) = delete;
+    SpaceCarving& operator=(const SpaceCarving&) = delete;
+
+    const vdb::VoxelFrame& frame() const { return frame_; }
+
+    // Whether gaps between points are to be closed, which hold points then: larger voxels close
+    // them by themselves.
+    bool closes_gaps() const;
+
+    struct Carved {
+        std::shared_ptr<vdb::VoxelScene> scene;
+        bool from_around = false;  // whether the frames show the scene from around
+    };
+    // Once: with the primitive of each point, and of those that close gaps. Throws what carving
+    // beside has thrown.
+    Carved finish(std::span<const std::int32_t> primitive_of_point, const geometry::GapPoints& gaps,
+                  StageClock& stage);
+
+  private:
+    void begin();
+    bool carve(vdb::VoxelScene& scene, const std::function<void(double)>& progress) const;
+    Carved take_carved(std::span<const std::int32_t> primitive_of_point);
+
+    device::Device& device_;
+    const Ingested& input_;
+    vdb::VoxelFrame frame_;
+    // What the other thread has found, once `done_` is set.
+    std::shared_ptr<vdb::VoxelScene> scene_;
+    bool from_around_ = false;
+    std::future<void> done_;  // not valid: nothing goes on beside
+    std::jthread beside_;
+};
+
+}  // namespace topple

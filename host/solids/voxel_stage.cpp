@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "solids/voxel_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "core/thread_pool.h"
+#include "geometry/algebraic_model.h"
+#include "geometry/ledges.h"
+#include "geometry/split.h"
+#include "geometry/surface_gaps.h"
+#include "solids/boundary.h"
+#include "solids/patches.h"
+#include "vdb/completion.h"
+
+namespace topple {
+namespace {
+
+// The solids among so many primitives, by their voxels, numbered in their order.
+std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t primitives) {
+    std::vector<std::uint64_t> voxels(primitives, 0);
+    for (const std::int32_t p : cells.primitive) {
+        if (p >= 0) ++voxels[static_cast<std::size_t>(p)];
+    }
+    std::vector<std::int32_t> number;
+    std::int32_t next = 0;
+    for (const std::uint64_t count : voxels) number.push_back(count >= least_voxels ? next++ : -1);
+    return number;
+}
+
+// The k of the voxels in which most of the lowest storey's floor lies; the lowest number where
+// there is no floor.
+std::int32_t floor_level(const SolidCells& cells, const GeometryStage& geometry) {
+    const double top = (geometry.storeys.empty() ? std::numeric_limits<double>::infinity()
+                                                 : geometry.storeys.front().top_m) /
+                       cells.voxel_m;
+    std::vector<std::int32_t> k;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (role_of(geometry.role, cells.primitive[n]) == Role::floor && cells.k[n] < top)
+            k.push_back(cells.k[n]);
+    }
+    if (k.empty()) return std::numeric_limits<std::int32_t>::min();
+    const auto middle = k.begin() + static_cast<std::ptrdiff_t>(k.size() / 2);
+    std::nth_element(k.begin(), middle, k.end());
+    return *middle;
+}
+
+std::vector<vdb::StandsOn> ledges(const GeometryStage& geometry) {
+    const Vec3& up = geometry.frame.axes[2];
+    std::vector<vdb::StandsOn> out;
+    for (const geometry::Ledge& l :
+         geometry::ledges_between(geometry.surfels, geometry.primitives, {up[0], up[1], up[2]}))
+        out.push_back({l.above, l.below, l.height_m});
+    return out;
+}
+
+// The faces of the primitives: what bounds the solids within their voxels.
+struct Faces {
+    std::vector<SurfacePatch> patches;
+    solids::SeenCells seen;
+    std::vector<bool> sheet;  // by primitive: of the shell, and seen from one side only
+};
+
+// Where patches were seen, and what lies between: gaps of sparse scans.
+solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPoints& gaps,
+                                   std::vector<std::int32_t> solid, std::vector<std::int32_t> face,
+                                   const std::vector<std::int32_t>& number,
+                                   const std::array<Vec3, 3>& axes, double voxel_m,
+                                   ThreadPool& threads) {
+    if (gaps.size() == 0) return solids::seen_cells(cloud, solid, face, axes, voxel_m, threads);
+    std::int32_t faces = 0;
+    for (const std::int32_t f : face) faces = std::max(faces, f + 1);
+    std::vector<bool> left(static_cast<std::size_t>(faces), false);
+    for (const std::int32_t f : face)
+        if (f >= 0) left[static_cast<std::size_t>(f)] = true;
+    const PointCloud all = geometry::with_gaps(cloud, gaps);
+    for (std::size_t n = 0; n < gaps.size(); ++n) {
+        const std::int32_t f = gaps.face[n];
+        solid.push_back(number[static_cast<std::size_t>(gaps.primitive[n])]);
+        face.push_back(f >= 0 && f < faces && left[static_cast<std::size_t>(f)] ? f : -1);
+    }
+    return solids::seen_cells(all, solid, face, axes, voxel_m, threads);
+}
+
+Faces find_faces(device::Device& device, const Ingested& input, const GeometryStage& geometry,
+                 const geometry::GapPoints& gaps, const std::vector<std::int32_t>& number,
+                 double voxel_m, std::span<const Role> roles) {
+    const geometry::Regions& faces = geometry.primitives.faces;
+    std::vector<std::int32_t> face_of_point;
+    face_of_point.reserve(input.cloud.size());
+    for (const std::uint32_t s : geometry.surfels.of_point) face_of_point.push_back(faces.label[s]);
+    Faces out;
+    out.patches = solids::fit_patches(input.cloud, faces.regions, face_of_point,
+                                      geometry.frame.axes, device.threads());
+    std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
+    solids::drop_explained(input.cloud, out.patches, geometry.frame.axes,
+                           2 * geometry.surfels.cell_m, solid_of_point, face_of_point,
+                           device.threads());
+    solids::add_narrow_faces(input.cloud, geometry.frame.axes, 2 * geometry.surfels.cell_m,
+                             out.patches, solid_of_point, face_of_point, device.threads());
+    out.seen =
+        seen_and_between(input.cloud, gaps, std::move(solid_of_point), std::move(face_of_point),
+                         number, geometry.frame.axes, voxel_m, device.threads());
+    out.sheet = solids::one_sided(out.seen, out.patches, roles.size());
+    for (std::size_t p = 0; p < roles.size(); ++p)
+        out.sheet[p] = out.sheet[p] && in_shell(roles[p]);
+    return out;
+}
+
+// Of the shell's solids those that were seen from one side only, by what their surfels' faces look
+// to.
+std::vector<bool> find_sheets(const GeometryStage& geometry,
+                              const std::vector<std::int32_t>& number,
+                              std::span<const Role> roles) {
+    const geometry::Surfels& s = geometry.surfels;
+    const geometry::Regions& faces = geometry.primitives.faces;
+    std::vector<Eigen::Vector3d> sum(roles.size(), Eigen::Vector3d::Zero());
+    std::vector<double> count(roles.size(), 0.0);
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        const std::int32_t face = faces.label[n], primitive = geometry.primitives.label[n];
+        const std::int32_t p = primitive < 0 ? -1 : number[static_cast<std::size_t>(primitive)];
+        if (face < 0 || p < 0 || !in_shell(roles[static_cast<std::size_t>(p)])) continue;
+        const geometry::AlgebraicModel& model = faces.regions[static_cast<std::size_t>(face)].model;
+        sum[static_cast<std::size_t>(p)] +=
+            geometry::gradient(model, geometry::position(s, n)).normalized();
+        ++count[static_cast<std::size_t>(p)];
+    }
+    std::vector<bool> out;
+    for (std::size_t p = 0; p < roles.size(); ++p)
+        out.push_back(in_shell(roles[p]) && sum[p].norm() >= solids::one_way * count[p]);
+    return out;
+}
+
+// For each cell the unseen voxels right below it, up to what fits. What is below floors and behind
+// walls is of no interest.
+std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view,
+                                       const std::vector<bool>& sheet) {
+    const SolidCells& cells = view.cells();
+    std::vector<std::uint8_t> out(cells.size(), 0);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p < 0 || sheet[static_cast<std::size_t>(p)]) continue;
+        out[n] = static_cast<std::uint8_t>(
+            view.unseen_run({cells.i[n], cells.j[n], cells.k[n] - 1}, 2, -1, 255));
+    }
+    return out;
+}
+
+// Heights at which one primitive is known to stand on another.
+std::vector<solids::KnownRest> known_rests(const GeometryStage& geometry,
+                                           const std::vector<std::int32_t>& number) {
+    std::vector<solids::KnownRest> out;
+    for (const vdb::StandsOn& on : ledges(geometry)) {
+        const std::int32_t above = number[static_cast<std::size_t>(on.above)],
+                           below = number[static_cast<std::size_t>(on.below)];
+        if (above >= 0 && below >= 0) out.push_back({above, below, on.height_m});
+    }
+    return out;
+}
+
+// Strays are no body, and in no way.
+struct Parted {
+    SolidCells near, strays;
+};
+Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
+    Parted out;
+    out.near.voxel_m = out.strays.voxel_m = cells.voxel_m;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
+        SolidCells& to = in_bounds ? out.near : out.strays;
+        to.i.push_back(cells.i[n]);
+        to.j.push_back(cells.j[n]);
+        to.k.push_back(cells.k[n]);
+        to.primitive.push_back(cells.primitive[n]);
+        to.basis.push_back(cells.basis[n]);
+        to.unseen_below.push_back(cells.unseen_below[n]);
+    }
+    return out;
+}
+
+std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Ingested& input,
+                                              const GeometryStage& geometry,
+                                              const geometry::GapPoints& gaps,
+                                              const std::vector<std::int32_t>& number,
+                                              const vdb::VoxelScene& volume, SolidCells cells,
+                                              std::vector<Role> roles) {
+    Faces faces = find_faces(device, input, geometry, gaps, number, cells.voxel_m, roles);
+    cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), faces.sheet);
+    Parted parted = part_strays(cells, volume);
+    BoundaryCells boundary =
+        solids::find_boundary(device, parted.near, faces.seen, std::move(faces.patches),
+                              faces.sheet, known_rests(geometry, number));
+    return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
+                                              std::move(parted.strays), std::move(boundary));
+}
+
+std::shared_ptr<const SolidScene> scene_of_whole_voxels(const GeometryStage& geometry,
+                                                        const std::vector<std::int32_t>& number,
+                                                        const vdb::VoxelScene& volume,
+                                                        SolidCells cells, std::vector<Role> roles) {
+    cells.unseen_below =
+        unseen_below(vdb::VolumeView(volume, cells, roles), find_sheets(geometry, number, roles));
+    Parted parted = part_strays(cells, volume);
+    return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
+                                              std::move(parted.strays));
+}
+
+constexpr const char* fraction_field = "fraction";
+
+}  // namespace
+
+// The part of each voxel that is solid, of whichever primitives.
+void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume) {
+    const SolidCells cells = solids.with_strays();
+    const BoundaryCells& b = solids.boundary();
+    std::vector<std::int32_t> i, j, k;
+    std::vector<float> fraction;
+    const auto add = [&](const std::tuple<std::int32_t, std::int32_t, std::int32_t>& at,
+                         std::uint32_t share) {
+        i.push_back(std::get<0>(at));
+        j.push_back(std::get<1>(at));
+        k.push_back(std::get<2>(at));
+        fraction.push_back(static_cast<float>(std::min(share, BoundaryCells::whole)) /
+                           static_cast<float>(BoundaryCells::whole));
+    };
+    std::size_t n = 0, m = 0;
+    while (n < cells.size() || m < b.size()) {
+        const auto cell = [&] { return std::tuple(cells.i[n], cells.j[n], cells.k[n]); };
+        const auto part = [&] { return std::tuple(b.i[m], b.j[m], b.k[m]); };
+        const auto at = n == cells.size() ? part()
+                        : m == b.size()   ? cell()
+                                          : std::min(cell(), part());
+        // A cell of which the boundary says nothing is solid as a whole.
+        const std::int32_t own =
+            n < cells.size() && cell() == at ? cells.primitive[n] : std::int32_t{-2};
+        bool whole = own != -2;
+        std::uint32_t share = 0;
+        for (; m < b.size() && part() == at; ++m) {
+            share += b.share[m];
+            whole = whole && b.primitive[m] != own;
+        }
+        add(at, whole ? BoundaryCells::whole : share);
+        n += own != -2;
+    }
+    volume.add_field(fraction_field, i, j, k, fraction);
+}
+
+void take_over(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene) {
+    SolidCells cells = before.cells();
+    const SolidCells& to = now.cells();
+    std::vector<vdb::Claim> claims;
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (to.primitive[n] != cells.primitive[n])
+            claims.push_back({{to.i[n], to.j[n], to.k[n]}, to.primitive[n], to.basis[n]});
+    vdb::commit(claims, scene, cells);
+}
+
+void take_away(const TakenAway& taken, vdb::VoxelScene& scene) {
+    scene.relabel(taken.number);
+    std::vector<vdb::Voxel> empty;
+    for (const TakenAway::Voxel& v : taken.changed) {
+        if (v.primitive < 0)
+            empty.push_back(v.at);
+        else
+            scene.put_label(v.at[0], v.at[1], v.at[2], v.primitive);
+    }
+    scene.set_empty(empty);
+    scene.remove_field(fraction_field);
+    store_fractions(*taken.solids, scene);
+}
+
+std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
+                                   std::span<const std::int32_t> number) {
+    std::vector<std::int32_t> out;
+    out.reserve(primitive.size());
+    for (const std::int32_t p : primitive)
+        out.push_back(p < 0 ? -1 : number[static_cast<std::size_t>(p)]);
+    return out;
+}
+
+geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
+                                  std::span<const std::int32_t> number) {
+    samples.primitive = numbered(samples.primitive, number);
+    geometry::sort_by_primitive(samples);
+    return samples;
+}
+
+VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
+                       SpaceCarving& carving, StageClock& stage, SolidDetail detail) {
+    VoxelStage out;
+    out.by_sensors = input.by_sensors;
+    const double voxel_m = carving.frame().voxel_m;
+    geometry::GapPoints gaps;
+    stage("voxels", [&] {
+        if (carving.closes_gaps())
+            gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
+                                        geometry.primitives.label, voxel_m / 2, device.threads());
+    });
+    const SpaceCarving::Carved carved = carving.finish(geometry.primitive_of_point, gaps, stage);
+    out.scene = carved.scene;
+    stage("filling", [&] {
+        SolidCells cells = out.scene->solid_cells();
+        vdb::CompletionOptions options;
+        options.fill.columns = carved.from_around;
+        options.fill.lowest = floor_level(cells, geometry);
+        options.fill.roles = geometry.role;
+        options.ledges = ledges(geometry);
+        options.map = input.space ? &*input.space : nullptr;
+        vdb::complete(device, options, *out.scene, cells);
+        out.number = solid_numbers(cells, geometry.role.size());
+        out.scene->relabel(out.number);
+        cells.primitive = numbered(cells.primitive, out.number);
+        std::vector<Role> roles;
+        for (std::size_t p = 0; p < geometry.role.size(); ++p)
+            if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
+        if (detail == SolidDetail::whole_voxels) {
+            out.solids = scene_of_whole_voxels(geometry, out.number, *out.scene, std::move(cells),
+                                               std::move(roles));
+            return;
+        }
+        out.solids = solid_scene(device, input, geometry, gaps, out.number, *out.scene,
+                                 std::move(cells), std::move(roles));
+        store_fractions(*out.solids, *out.scene);
+    });
+    return out;
+}
+
+}  // namespace topple
