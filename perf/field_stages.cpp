@@ -6,7 +6,7 @@
 #include "device/stage_clock.h"
 #include "objects/object_stage.h"
 #include "safety/safety_stage.h"
-#include "solids/voxel_stage.h"
+#include "solids/volume.h"
 
 namespace topple::perf {
 namespace {
@@ -32,7 +32,7 @@ std::vector<Result> measure_fields(device::Device& device, const StageScene& sce
     ParseOptions options;
     StageClock clock(timings, options);
     SpaceCarving carving(device, scene.ingested, {stage_voxel_m, scene.geometry.frame.axes});
-    const VoxelStage voxels = make_solids(device, scene.ingested, scene.geometry, carving, clock);
+    const Volume voxels = fill_volume(device, scene.ingested, scene.geometry, carving, clock);
     SolidParts parts = solid_parts(scene.geometry, voxels);
     const ObjectStage objects = find_objects(device, options, clock, parts);
     std::vector<Result> out;

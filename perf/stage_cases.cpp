@@ -13,7 +13,7 @@ namespace {
 
 using Timings = std::vector<std::pair<std::string, double>>;
 
-GeometryStage segment(device::Device& device, const StageScene& scene, Timings& timings) {
+Surfaces segment(device::Device& device, const StageScene& scene, Timings& timings) {
     const ParseOptions options;
     StageClock clock(timings, options);
     return find_primitives(device, scene.ingested,
@@ -90,7 +90,7 @@ StageScene make_stage_scene(device::Device& device) {
     camera.fuse_m = 0.0098;
     StageScene scene;
     scene.sequence = scenes::walk(scenes::furnished_room({.seed = 1}), camera);
-    scene.ingested = ingest_cloud(device, scene.sequence.cloud, {});
+    scene.ingested = observe_cloud(device, scene.sequence.cloud, {});
     Timings ignored;
     scene.geometry = segment(device, scene, ignored);
     return scene;

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "perf/measure.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "scenes/depth_camera.h"
-#include "solids/geometry_stage.h"
+#include "solids/surfaces.h"
 #include "vdb/voxel_scene.h"
 
 // Whole stages, host and kernels together, on one generated room.
@@ -19,8 +19,8 @@ inline constexpr double stage_voxel_m = 0.02;
 
 struct StageScene {
     scenes::Sequence sequence;  // 40 frames of a walk through a room: 3.0 million rays
-    Ingested ingested;          // its fused cloud of 690,000 points, bare as a file would give it
-    GeometryStage geometry;     // what the stages below start from
+    Observation ingested;       // its fused cloud of 690,000 points, bare as a file would give it
+    Surfaces geometry;          // what the stages below start from
 };
 StageScene make_stage_scene(device::Device& device);
 

@@ -205,7 +205,8 @@ StandingScene::StandingScene(device::Device& device, const std::vector<StandingO
 std::vector<physics::Instability> StandingScene::instability() const {
     std::vector<physics::Candidate> candidates = candidates_;
     const CellColumns columns(cells_);
-    std::vector<physics::Body> bodies{{}};  // what is fixed has no mass, and does not slide
+    std::vector<physics::MassProperties> bodies{
+        {}};  // what is fixed has no mass, and does not slide
     for (physics::Candidate& candidate : candidates) {
         candidate.edge_drop_m = physics::drops_when_tipped_m(cells_, columns, candidate);
         bodies.push_back(candidate.body);

@@ -65,7 +65,7 @@ void commit(std::span<const Claim> claims, VoxelScene& volume, SolidCells& cells
 
 std::uint64_t fill(device::Device& device, VoxelScene& volume, const FillOptions& options) {
     volume.clear_completed();
-    const std::vector<Claim> claims = filled(device, volume, options);
+    const std::vector<Claim> claims = six_direction_claims(device, volume, options);
     SolidCells cells;
     commit(claims, volume, cells);
     return claims.size();
@@ -77,13 +77,13 @@ void complete(device::Device& device, const CompletionOptions& options, VoxelSce
         device.threads().poll();
         commit(propose(VolumeView(volume, cells, options.fill.roles)), volume, cells);
     };
-    commit(filled(device, volume, options.fill), volume, cells);
-    round([&](const VolumeView& view) { return settled(view, options.ledges); });
-    round([&](const VolumeView& view) { return extended(view); });
-    round([&](const VolumeView& view) { return backed(view); });
-    round([&](const VolumeView& view) { return bridged(view); });
-    round([&](const VolumeView& view) { return detached(view); });
-    if (options.map) commit(told(volume, *options.map), volume, cells);
+    commit(six_direction_claims(device, volume, options.fill), volume, cells);
+    round([&](const VolumeView& view) { return support_claims(view, options.ledges); });
+    round([&](const VolumeView& view) { return leg_claims(view); });
+    round([&](const VolumeView& view) { return built_in_claims(view); });
+    round([&](const VolumeView& view) { return gap_claims(view); });
+    round([&](const VolumeView& view) { return detached_claims(view); });
+    if (options.map) commit(map_claims(volume, *options.map), volume, cells);
     device.threads().poll();
 }
 

@@ -83,8 +83,8 @@ struct FillOptions {
     std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
     std::vector<Role> roles;  // by primitive
 };
-std::vector<Claim> filled(device::Device& device, const VoxelScene& volume,
-                          const FillOptions& options);
+std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene& volume,
+                                        const FillOptions& options);
 
 // Ends filled solids at the surface on which they are seen to stand: rays pass from a box into
 // the table top that it hides, and take that for more of the box. What lies below goes to the
@@ -93,30 +93,30 @@ struct StandsOn {
     std::int32_t above = -1, below = -1;  // primitives
     double height_m = 0;                  // of the one's foot, grid frame
 };
-std::vector<Claim> settled(const VolumeView& view, std::span<const StandsOn> on = {});
+std::vector<Claim> support_claims(const VolumeView& view, std::span<const StandsOn> on = {});
 
 // Slender parts (up to 10 cm) whose upper end nobody saw go on, through at most 60 cm of what
 // nobody saw, to the wider thing above them: legs under a seat.
-std::vector<Claim> extended(const VolumeView& view);
+std::vector<Claim> leg_claims(const VolumeView& view);
 
 // Upright sheets of the shell that stand before a wall, along an axis and at most 70 cm, with
 // nothing seen between: fronts of what is built in, which reaches to the wall.
-std::vector<Claim> backed(const VolumeView& view);
+std::vector<Claim> built_in_claims(const VolumeView& view);
 
 // Joins neighbouring primitives through what no frame saw: gaps of up to noise_gap
 // invisible voxels along an axis between two primitives are completed, each voxel by the nearer
 // of the two. Legs meet their table top where the edge above hides it. A gap with a voxel that
 // was seen to be empty stays; so does one beside, not below or above, a wall or ceiling.
-std::vector<Claim> bridged(const VolumeView& view);
+std::vector<Claim> gap_claims(const VolumeView& view);
 
 // What was completed of a thing but hangs together with nothing that was seen of it or of others,
 // not even across a hidden gap of noise_gap voxels up or down, is not solid after all: rays
 // went on past space that was seen to be empty. What is the room's is left as it is.
-std::vector<Claim> detached(const VolumeView& view);
+std::vector<Claim> detached_claims(const VolumeView& view);
 
 // What a map says to be solid within its surfaces: from here on as if it was seen. Such voxels
 // belong to the primitive that they were completed to, if any. Throws as VoxelScene::set_free().
-std::vector<Claim> told(const VoxelScene& volume, const SpaceMap& map);
+std::vector<Claim> map_claims(const VoxelScene& volume, const SpaceMap& map);
 
 // The one way by which anything is completed: into the volume, and into the list of its solid
 // voxels.

@@ -164,7 +164,7 @@ void VoxelScene::set_free(const SpaceMap& map) {
     g.take_in(leaves);
 }
 
-std::vector<Claim> told(const VoxelScene& volume, const SpaceMap& map) {
+std::vector<Claim> map_claims(const VoxelScene& volume, const SpaceMap& map) {
     check(map);
     const VoxelScene::Grids& g = volume.grids();
     std::map<LeafTable::Leaf, std::bitset<512>> solid;

@@ -13,9 +13,9 @@
 #include "graph/group_energy.h"
 #include "graph/joint_bias.h"
 #include "graph/stable_objects.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "scenes/temporary_folder.h"
-#include "solids/solid_stage.h"
+#include "solids/find_solids.h"
 
 namespace topple::evaluation {
 namespace {
@@ -118,7 +118,7 @@ RoomParts scan_parts(const RoomOptions& options) {
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options.parse);
     device::Device& device = *options.parse.device;
-    const Ingested input = ingest(device, folder.path(), options.parse);
+    const Observation input = observe(device, folder.path(), options.parse);
     const auto [geometry, voxels] =
         find_solids(device, input, options.parse.voxel_m, options.parse, stage);
     ScenePoints points;

@@ -30,7 +30,7 @@ using JointWeights = std::array<double, joint_features>;
 
 // Of each pair of the contact graph, in its order. shell: by primitive.
 std::vector<JointFeatures> features_of(const graph::ContactGraph& contacts,
-                                       std::span<const physics::Body> bodies,
+                                       std::span<const physics::MassProperties> bodies,
                                        const std::vector<bool>& shell);
 
 double probability(const JointWeights& weights, const JointFeatures& features);

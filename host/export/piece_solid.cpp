@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "physics/weld.h"
+#include "physics/merge_close_points.h"
 #include "solids/cell_shape.h"
 
 namespace topple::exports {
@@ -35,7 +35,7 @@ PieceSolid PieceSolids::of(std::int32_t piece, std::span<const std::size_t> cell
         if (!between_alike(n, piece)) add_corners(n, points);
     }
     constexpr double alike = 0.005;  // of a voxel
-    out.hull = hull_part(physics::welded(points, alike * h));
+    out.hull = hull_part(physics::merge_close_points(points, alike * h));
     if (out.hull) sample(cells, out.m3, *out.hull);
     return out;
 }

@@ -8,7 +8,8 @@
 
 namespace topple::graph {
 
-GroupEnergy::GroupEnergy(const ContactGraph& contacts, std::span<const physics::Body> bodies,
+GroupEnergy::GroupEnergy(const ContactGraph& contacts,
+                         std::span<const physics::MassProperties> bodies,
                          std::span<const Joint> joints, const ShellOdds& shell,
                          double standing_weight)
     : contacts_(contacts),

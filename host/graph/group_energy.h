@@ -19,7 +19,7 @@ namespace topple::graph {
 // are taken for the room's anyhow; S = 0. Keeps references to its arguments.
 class GroupEnergy {
   public:
-    GroupEnergy(const ContactGraph& contacts, std::span<const physics::Body> bodies,
+    GroupEnergy(const ContactGraph& contacts, std::span<const physics::MassProperties> bodies,
                 std::span<const Joint> joints, const ShellOdds& shell, double standing_weight);
 
     double operator()(const GroupQuery& query) const;
@@ -35,7 +35,7 @@ class GroupEnergy {
     double standing(const GroupQuery& query) const;
 
     const ContactGraph& contacts_;
-    std::span<const physics::Body> bodies_;
+    std::span<const physics::MassProperties> bodies_;
     const ShellOdds& shell_;
     double standing_weight_;
     std::vector<std::vector<Neighbour>> neighbours_;

@@ -40,7 +40,7 @@ double margin(const physics::Candidate& c) {
 class Rows {
   public:
     Rows(const geometry::SurfaceSamples& samples, const geometry::PrimitiveShapes& shapes,
-         const ContactGraph& contacts, std::span<const physics::Body> bodies,
+         const ContactGraph& contacts, std::span<const physics::MassProperties> bodies,
          const geometry::SurfaceSeams& seams, std::span<const float> shell, ThreadPool& threads)
         : samples_(samples),
           shapes_(shapes),
@@ -109,7 +109,7 @@ class Rows {
     const geometry::SurfaceSamples& samples_;
     const geometry::PrimitiveShapes& shapes_;
     const ContactGraph& contacts_;
-    std::span<const physics::Body> bodies_;
+    std::span<const physics::MassProperties> bodies_;
     const geometry::SurfaceSeams& seams_;
     std::span<const float> shell_;
     ThreadPool& threads_;
@@ -359,7 +359,7 @@ std::span<const std::string_view> joint_feature_names() {
 
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
-                          std::span<const physics::Body> bodies,
+                          std::span<const physics::MassProperties> bodies,
                           const geometry::SurfaceSeams& seams, std::span<const float> shell,
                           ThreadPool& threads) {
     return Rows(samples, shapes, contacts, bodies, seams, shell, threads).table();

@@ -31,7 +31,7 @@ struct JointTable {
 // shell: by primitive, the probability that it is the room's.
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
-                          std::span<const physics::Body> bodies,
+                          std::span<const physics::MassProperties> bodies,
                           const geometry::SurfaceSeams& seams, std::span<const float> shell,
                           ThreadPool& threads);
 

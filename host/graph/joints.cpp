@@ -8,7 +8,8 @@ namespace topple::graph {
 
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
-                               const ContactGraph& contacts, std::span<const physics::Body> bodies,
+                               const ContactGraph& contacts,
+                               std::span<const physics::MassProperties> bodies,
                                const geometry::SurfaceSeams& seams, std::span<const float> shell,
                                ThreadPool& threads) {
     const JointTable table =

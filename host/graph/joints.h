@@ -24,7 +24,8 @@ struct Joint {
 // is the room's.
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
-                               const ContactGraph& contacts, std::span<const physics::Body> bodies,
+                               const ContactGraph& contacts,
+                               std::span<const physics::MassProperties> bodies,
                                const geometry::SurfaceSeams& seams, std::span<const float> shell,
                                ThreadPool& threads);
 

@@ -30,12 +30,13 @@ std::vector<Edge> edges_of(std::span<const Joint> joints) {
 
 }  // namespace
 
-physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physics::Body> bodies,
+physics::Candidate candidate_of(const ContactGraph& graph,
+                                std::span<const physics::MassProperties> bodies,
                                 const std::vector<bool>& shell,
                                 std::vector<std::int32_t> primitives) {
     physics::Candidate candidate;
     std::sort(primitives.begin(), primitives.end());
-    std::vector<physics::Body> parts;
+    std::vector<physics::MassProperties> parts;
     for (const std::int32_t p : primitives) parts.push_back(bodies[static_cast<std::size_t>(p)]);
     candidate.body = physics::combine(parts);
     std::vector<BorderPoint> points;
@@ -103,7 +104,8 @@ double standing_cost(const physics::Candidate& c, double noise_m) {
     return std::min(worst, -std::log(std::max(stands, unseen_support)));
 }
 
-Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
+Grouping group_primitives(const ContactGraph& graph,
+                          std::span<const physics::MassProperties> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads) {
     const std::vector<Joint> biased = biased_joints(joints, shell.pinned, options.joint_bias);

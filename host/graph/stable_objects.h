@@ -41,7 +41,8 @@ struct Grouping {
 // The rigid body that a set of primitives makes: its mass properties, and where it is held up by
 // what is not part of it. What something below carries is held as well where it touches the room's
 // shell at a height no less than its centre of mass: a ladder leans on its wall.
-physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physics::Body> bodies,
+physics::Candidate candidate_of(const ContactGraph& graph,
+                                std::span<const physics::MassProperties> bodies,
                                 const std::vector<bool>& shell,
                                 std::vector<std::int32_t> primitives);
 
@@ -55,7 +56,8 @@ double standing_cost(const physics::Candidate& candidate, double noise_m);
 
 // Minimises Eq. 8 by Swendsen-Wang cuts with q = P(joint), from the greedy contraction of the
 // joints on, over the groupings that keep to the links that are known. joints: sorted by (a, b).
-Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
+Grouping group_primitives(const ContactGraph& graph,
+                          std::span<const physics::MassProperties> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads);
 

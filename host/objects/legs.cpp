@@ -11,7 +11,7 @@ namespace {
 // Set by hand: height to width, and the share of the way to the underside.
 constexpr double slim = 4, most_of_the_way = 0.75;
 
-bool is_slim(const StableObject& object) {
+bool is_slim(const Body& object) {
     const auto& [wide, deep, high] = object.box.size_m;
     return !object.grounded && object.seen_enough() && std::max(wide, deep) > 0 &&
            high >= slim * std::max(wide, deep);
@@ -21,14 +21,14 @@ bool is_slim(const StableObject& object) {
 
 std::vector<std::int32_t> find_legs(const SolidScene& solids,
                                     std::span<const std::int32_t> object_of_primitive,
-                                    std::span<const StableObject> objects) {
+                                    std::span<const Body> objects) {
     const SolidCells& cells = solids.cells();
     const auto object = [&](std::size_t n) {
         const std::int32_t p = cells.primitive[n];
         return p < 0 ? -1 : object_of_primitive[static_cast<std::size_t>(p)];
     };
     std::vector<bool> slim_ones;
-    for (const StableObject& o : objects) slim_ones.push_back(is_slim(o));
+    for (const Body& o : objects) slim_ones.push_back(is_slim(o));
     // Columns of each slim object, and how many of them have what next above it.
     std::vector<std::int32_t> columns(objects.size());
     std::map<std::int32_t, std::map<std::int32_t, std::int32_t>> below;
@@ -41,8 +41,8 @@ std::vector<std::int32_t> find_legs(const SolidScene& solids,
         if (next == o) continue;  // its column ends further up
         ++columns[static_cast<std::size_t>(o)];
         if (next < 0) continue;
-        const StableObject &leg = objects[static_cast<std::size_t>(o)],
-                           &top = objects[static_cast<std::size_t>(next)];
+        const Body &leg = objects[static_cast<std::size_t>(o)],
+                   &top = objects[static_cast<std::size_t>(next)];
         if (top.grounded || top.seen_enough() ||
             top.candidate.body.mass_kg <= leg.candidate.body.mass_kg)
             continue;

@@ -14,6 +14,6 @@ namespace topple {
 // with nothing between. The upper end of a leg is in the shade of what it carries.
 std::vector<std::int32_t> find_legs(const SolidScene& solids,
                                     std::span<const std::int32_t> object_of_primitive,
-                                    std::span<const StableObject> objects);
+                                    std::span<const Body> objects);
 
 }  // namespace topple

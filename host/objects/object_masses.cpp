@@ -5,15 +5,15 @@
 #include <cmath>
 #include <cstddef>
 
-#include "physics/alike.h"
 #include "physics/closed_furniture.h"
 #include "physics/hollow_body.h"
+#include "physics/repeated_objects.h"
 
 namespace topple {
 namespace {
 
 std::vector<double> volumes(std::span<const std::int32_t> object_of_primitive,
-                            std::span<const physics::Body> bodies, std::size_t objects) {
+                            std::span<const physics::MassProperties> bodies, std::size_t objects) {
     std::vector<double> out(objects, 0);
     for (std::size_t p = 0; p < bodies.size(); ++p)
         out[static_cast<std::size_t>(object_of_primitive[p])] += bodies[p].volume_m3;
@@ -44,11 +44,11 @@ physics::BodyError scaled(physics::BodyError error, double factor) {
 
 // Makes the shell that is known of one object.
 void hollow_out(const SolidScene& solids, std::span<const std::int32_t> primitives, double wall_m,
-                double density_kg_m3, std::vector<physics::Body>& bodies,
+                double density_kg_m3, std::vector<physics::MassProperties>& bodies,
                 physics::Symmetric& inertia) {
     const physics::HollowBody shell = physics::hollow_body(solids, primitives, wall_m);
     for (std::size_t n = 0; n < primitives.size(); ++n) {
-        physics::Body& body = bodies[static_cast<std::size_t>(primitives[n])];
+        physics::MassProperties& body = bodies[static_cast<std::size_t>(primitives[n])];
         body.mass_kg = density_kg_m3 * shell.volume_m3[n];
         if (shell.volume_m3[n] > 0) body.center = shell.center[n];
     }
@@ -58,7 +58,7 @@ void hollow_out(const SolidScene& solids, std::span<const std::int32_t> primitiv
 
 // Scales the densities of one object to its mass.
 void weigh(std::span<const std::int32_t> primitives, double mass_kg,
-           std::vector<physics::Body>& bodies, physics::Symmetric& inertia) {
+           std::vector<physics::MassProperties>& bodies, physics::Symmetric& inertia) {
     double before = 0;
     for (const std::int32_t p : primitives) before += bodies[static_cast<std::size_t>(p)].mass_kg;
     if (!(before > 0)) return;
@@ -72,7 +72,8 @@ void weigh(std::span<const std::int32_t> primitives, double mass_kg,
 ObjectMasses weigh_objects(const SolidScene& solids,
                            std::span<const std::int32_t> object_of_primitive,
                            std::span<const KnownMass> known, std::int32_t grounded,
-                           const ParseOptions& options, std::vector<physics::Body>& bodies) {
+                           const ParseOptions& options,
+                           std::vector<physics::MassProperties>& bodies) {
     const std::size_t objects = known.size();
     ObjectMasses out;
     out.closed.assign(objects, false);
@@ -83,7 +84,7 @@ ObjectMasses weigh_objects(const SolidScene& solids,
     auto looks = physics::furniture_looks(solids, object_of_primitive, volume);
     for (std::size_t o = 0; o < objects; ++o)
         if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) looks[o] = {};
-    const physics::Alike alike = physics::alike_objects(looks);
+    const physics::Repeated alike = physics::find_repeated(looks);
     if (options.contents_kg_m3) {
         const std::vector<physics::ClosedOdds> odds = physics::closed_odds(looks, alike);
         for (std::size_t o = 0; o < objects; ++o) {
@@ -118,7 +119,7 @@ ObjectMasses weigh_objects(const SolidScene& solids,
                        out.inertia[o]);
         if (out.weighed[o]) weigh(primitives, *known[o].mass_kg, bodies, out.inertia[o]);
         for (const std::int32_t p : primitives) {
-            const physics::Body& body = bodies[static_cast<std::size_t>(p)];
+            const physics::MassProperties& body = bodies[static_cast<std::size_t>(p)];
             out.density_kg_m3[static_cast<std::size_t>(p)] =
                 body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0;
         }

@@ -26,7 +26,7 @@ struct ObjectMasses {
     std::vector<bool> closed, hollow, weighed;       // by object
     std::vector<physics::BodyError> contents_error;  // by object, 0 for solids
     std::vector<physics::Symmetric> inertia;         // by object, about its centre of mass
-    std::vector<double> alike_error_kg;              // by object: see physics/alike.h
+    std::vector<double> alike_error_kg;              // by object: see physics/repeated_objects.h
 };
 
 // Gives `bodies`, of primitives at the density of the options, the masses that they have in their
@@ -35,6 +35,7 @@ struct ObjectMasses {
 ObjectMasses weigh_objects(const SolidScene& solids,
                            std::span<const std::int32_t> object_of_primitive,
                            std::span<const KnownMass> known, std::int32_t grounded,
-                           const ParseOptions& options, std::vector<physics::Body>& bodies);
+                           const ParseOptions& options,
+                           std::vector<physics::MassProperties>& bodies);
 
 }  // namespace topple

@@ -41,7 +41,8 @@ graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
 }
 
 std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::ContactGraph& contacts,
-                                      std::span<const physics::Body> bodies, ThreadPool& threads) {
+                                      std::span<const physics::MassProperties> bodies,
+                                      ThreadPool& threads) {
     std::vector<float> shell;
     for (const double odds : parts.shell_log_odds)
         shell.push_back(static_cast<float>(fitted::probability(odds)));
@@ -143,7 +144,7 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, b
     const std::vector<double> floors = floor_levels(solids);
     out.objects.resize(members.size());
     threads.each(members.size(), 1, [&](std::size_t o) {
-        StableObject& object = out.objects[o];
+        Body& object = out.objects[o];
         object.candidate =
             graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
         object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
@@ -179,8 +180,7 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, b
         }
     });
     std::vector<graph::Carried> carried;
-    for (const StableObject& o : out.objects)
-        carried.push_back({o.grounded, o.candidate.body.mass_kg});
+    for (const Body& o : out.objects) carried.push_back({o.grounded, o.candidate.body.mass_kg});
     out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
                                         carried, columns);
 }
@@ -192,7 +192,7 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
     const auto count = static_cast<std::int32_t>(parts.model.size());
     const std::vector<double> density(static_cast<std::size_t>(count), options.density_kg_m3);
     const SolidCells& cells = parts.solids->cells();
-    std::vector<physics::Body> bodies =
+    std::vector<physics::MassProperties> bodies =
         stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
     graph::ContactGraph contacts =
         stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
@@ -202,7 +202,7 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
             shell_odds(parts.shell_log_odds)};
 }
 
-physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
+physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping,
                               double friction) {
     return {object.candidate, {object.inertia, object.highest_m},
             tipping,          safety::directions(),
@@ -210,7 +210,7 @@ physics::Toppling toppling_of(const StableObject& object, const physics::Stabili
 }
 
 std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
-                                   const std::vector<StableObject>& objects) {
+                                   const std::vector<Body>& objects) {
     std::vector<bool> out;
     for (const std::int32_t o : object_of_primitive)
         out.push_back(o >= 0 && objects[static_cast<std::size_t>(o)].grounded);
@@ -220,13 +220,13 @@ std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primi
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, const physics::HiddenWalls& walls,
                    std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<StableObject>& objects, const Unseen& unseen) {
+                   std::vector<Body>& objects, const Unseen& unseen) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
     const std::vector<ObjectBox> boxes = object_boxes(solids, object_of_primitive, objects.size());
     for (std::size_t o = 0; o < objects.size(); ++o) objects[o].box = boxes[o];
     std::vector<physics::Candidate> candidates;
-    for (StableObject& o : objects) {
+    for (Body& o : objects) {
         if (!o.grounded && !o.candidate.support_polygon.empty())
             o.candidate.edge_drop_m =
                 physics::drops_when_tipped_m(cells, columns, o.candidate, unseen);
@@ -246,12 +246,12 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     }
     const auto on_level = physics::evaluate(device, table, held, physics::Passes::exact);
     for (std::size_t n = 0; n < dropping.size(); ++n) level[dropping[n]] = on_level[n];
-    std::vector<physics::Body> bodies;
+    std::vector<physics::MassProperties> bodies;
     // What is fixed to the ground does not slide: no mass, nothing to search.
-    for (const StableObject& o : objects)
-        bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
-    std::vector<physics::Stance> stances;
-    for (const StableObject& o : objects) {
+    for (const Body& o : objects)
+        bodies.push_back(o.grounded ? physics::MassProperties{} : o.candidate.body);
+    std::vector<physics::KnownFooting> stances;
+    for (const Body& o : objects) {
         stances.push_back({o.candidate.stood ? o.candidate.support_polygon : physics::Polygon{},
                            o.candidate.support_height_m, o.rest != graph::RestKind::seen});
     }

@@ -27,7 +27,7 @@
 namespace topple {
 
 // One object: a group of primitives, or the ground with all that is fixed to it.
-struct StableObject {
+struct Body {
     physics::Candidate candidate;
     bool grounded = false;
     physics::Stability tipping;
@@ -61,16 +61,16 @@ struct StableObject {
 };
 
 // S(W) by direction and height of an object that tips so, as it stands.
-physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
+physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping,
                               double friction);
 
 struct ObjectStage {
-    std::vector<physics::Body> bodies;  // by primitive
+    std::vector<physics::MassProperties> bodies;  // by primitive
     graph::ContactGraph contacts;
     std::vector<double> pair_probability;  // by pair of the contacts: that both are one solid
     graph::Grouping grouping;
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
-    std::vector<StableObject> objects;
+    std::vector<Body> objects;
     physics::HiddenWalls hidden_walls;
     std::vector<Support> supports;  // sorted by (supporter, supported)
     HandCorrections::Told told;
@@ -79,7 +79,7 @@ struct ObjectStage {
 
 // What grouping starts from.
 struct PartStage {
-    std::vector<physics::Body> bodies;  // by primitive
+    std::vector<physics::MassProperties> bodies;  // by primitive
     graph::ContactGraph contacts;
     std::vector<graph::Joint> joints;
     graph::ShellOdds shell;
@@ -89,7 +89,7 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
 
 // By primitive, whether it is of the building, or of what is fixed to it.
 std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
-                                   const std::vector<StableObject>& objects);
+                                   const std::vector<Body>& objects);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
 // their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
@@ -97,7 +97,7 @@ std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primi
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, const physics::HiddenWalls& walls,
                    std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<StableObject>& objects, const Unseen& unseen = {});
+                   std::vector<Body>& objects, const Unseen& unseen = {});
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

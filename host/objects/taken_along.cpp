@@ -10,8 +10,7 @@ namespace {
 using Holders = std::vector<std::vector<Support>>;  // of each object
 
 // Of two pieces that carry each other the lighter one is no support of the heavier.
-bool carried_back(const std::vector<StableObject>& objects, const Holders& holders,
-                  const Support& s) {
+bool carried_back(const std::vector<Body>& objects, const Holders& holders, const Support& s) {
     const auto by = static_cast<std::size_t>(s.supporter),
                on = static_cast<std::size_t>(s.supported);
     if (objects[by].grounded ||
@@ -21,8 +20,8 @@ bool carried_back(const std::vector<StableObject>& objects, const Holders& holde
                                [&](const Support& back) { return back.supporter == s.supported; });
 }
 
-std::vector<std::int32_t> along_with(const std::vector<StableObject>& objects,
-                                     const Holders& holders, std::size_t o) {
+std::vector<std::int32_t> along_with(const std::vector<Body>& objects, const Holders& holders,
+                                     std::size_t o) {
     std::vector<bool> gone(objects.size());
     gone[o] = true;
     for (bool more = true; more;) {

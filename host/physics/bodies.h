@@ -16,7 +16,7 @@
 namespace topple::physics {
 
 // Mass properties of one primitive or of a group of them.
-struct Body {
+struct MassProperties {
     std::uint64_t voxels = 0;  // that are it for the most part
     double volume_m3 = 0, mass_kg = 0;
     Vec3 center{};  // centre of mass
@@ -25,11 +25,12 @@ struct Body {
 // Mass properties of `count` labels over the cells (kernel segmented_sum; exact integer sums), of
 // which those of `boundary` count with their shares. Sorted by (i, j, k) where there are any.
 // density_kg_m3: one value per label.
-std::vector<Body> mass_properties(device::Device& device, const SolidCells& cells,
-                                  std::int32_t count, std::span<const double> density_kg_m3,
-                                  const BoundaryCells& boundary = {});
+std::vector<MassProperties> mass_properties(device::Device& device, const SolidCells& cells,
+                                            std::int32_t count,
+                                            std::span<const double> density_kg_m3,
+                                            const BoundaryCells& boundary = {});
 
-Body combine(std::span<const Body> bodies);
+MassProperties combine(std::span<const MassProperties> bodies);
 
 // Two primitives with face-adjacent voxels.
 struct TouchingPair {

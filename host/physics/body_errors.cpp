@@ -170,7 +170,7 @@ std::vector<VolumeError> volume_errors(const SolidCells& cells, const BoundaryCe
     return out;
 }
 
-BodyError body_error(const Body& body, std::span<const std::int32_t> primitives,
+BodyError body_error(const MassProperties& body, std::span<const std::int32_t> primitives,
                      std::span<const VolumeError> errors, std::span<const double> densities) {
     BodyError out;
     if (!(body.mass_kg > 0)) return out;

@@ -33,7 +33,7 @@ struct BodyError {
     double mass_kg = 0;
     Vec3 center_m{};  // along each axis, grid frame
 };
-BodyError body_error(const Body& body, std::span<const std::int32_t> primitives,
+BodyError body_error(const MassProperties& body, std::span<const std::int32_t> primitives,
                      std::span<const VolumeError> errors, std::span<const double> densities);
 
 }  // namespace topple::physics

@@ -32,7 +32,7 @@ std::vector<Symmetric> second_moments(const SolidCells& cells, std::int32_t coun
 }
 
 std::vector<Symmetric> inertia_of_objects(std::span<const Symmetric> moments,
-                                          std::span<const Body> bodies,
+                                          std::span<const MassProperties> bodies,
                                           std::span<const std::int32_t> object_of_primitive,
                                           std::span<const double> density_kg_m3) {
     struct Sum {

@@ -24,7 +24,7 @@ std::vector<Symmetric> second_moments(const SolidCells& cells, std::int32_t coun
 // Moments and products of inertia of each object about the centre of its volume, kg m^2, grid
 // frame, at one density each. moments, bodies: by primitive.
 std::vector<Symmetric> inertia_of_objects(std::span<const Symmetric> moments,
-                                          std::span<const Body> bodies,
+                                          std::span<const MassProperties> bodies,
                                           std::span<const std::int32_t> object_of_primitive,
                                           std::span<const double> density_kg_m3);
 

@@ -85,7 +85,7 @@ struct Stability {
 // which it is held up (x, y pairs, metres, counter-clockwise; empty: nothing below holds it).
 struct Candidate {
     std::vector<std::int32_t> primitives;
-    Body body;
+    MassProperties body;
     std::vector<std::array<double, 2>> support_polygon;
     double support_height_m = 0;
     double border_error_m = 0;  // of the polygon's border: one standard error

@@ -142,14 +142,15 @@ void add_slab(device::Device& device, const SolidCells& cells, std::size_t begin
 
 }  // namespace
 
-std::vector<Body> mass_properties(device::Device& device, const SolidCells& cells,
-                                  std::int32_t count, std::span<const double> density_kg_m3,
-                                  const BoundaryCells& boundary) {
+std::vector<MassProperties> mass_properties(device::Device& device, const SolidCells& cells,
+                                            std::int32_t count,
+                                            std::span<const double> density_kg_m3,
+                                            const BoundaryCells& boundary) {
     if (count < 0 || density_kg_m3.size() != static_cast<std::size_t>(count)) {
         throw Error(ErrorKind::usage, "mass_properties: " + std::to_string(density_kg_m3.size()) +
                                           " densities for " + std::to_string(count) + " labels");
     }
-    std::vector<Body> bodies(static_cast<std::size_t>(count));
+    std::vector<MassProperties> bodies(static_cast<std::size_t>(count));
     if (count == 0 || cells.size() == 0) return bodies;
     check_cells(cells, count);
     const std::array<std::int32_t, 3> origin = origin_of(cells);
@@ -165,7 +166,7 @@ std::vector<Body> mass_properties(device::Device& device, const SolidCells& cell
     for (std::size_t l = 0; l < bodies.size(); ++l) {
         const Moments& m = moments[l];
         if (m.cells == 0 && m.shares == 0) continue;
-        Body& body = bodies[l];
+        MassProperties& body = bodies[l];
         body.voxels = m.cells + m.parts;
         const double parts = static_cast<double>(m.shares) / BoundaryCells::whole;
         const double volume = static_cast<double>(m.cells) + parts;
@@ -183,10 +184,10 @@ std::vector<Body> mass_properties(device::Device& device, const SolidCells& cell
     return bodies;
 }
 
-Body combine(std::span<const Body> bodies) {
-    Body all;
+MassProperties combine(std::span<const MassProperties> bodies) {
+    MassProperties all;
     Vec3 moment{}, first_moment{};
-    for (const Body& body : bodies) {
+    for (const MassProperties& body : bodies) {
         all.voxels += body.voxels;
         all.volume_m3 += body.volume_m3;
         all.mass_kg += body.mass_kg;

@@ -16,8 +16,8 @@ double foot_error(double border_error_m, double distance_m) {
 
 }  // namespace
 
-TippingPush tipping_push(const Body& body, const BodyError& known, double ahead_m, double aside,
-                         double border_error_m, double arm_m) {
+TippingPush tipping_push(const MassProperties& body, const BodyError& known, double ahead_m,
+                         double aside, double border_error_m, double arm_m) {
     const double weight = body.mass_kg * gravity;
     const double error_m = foot_error(border_error_m / aside, ahead_m);
     return {weight * ahead_m / arm_m,
@@ -27,7 +27,7 @@ TippingPush tipping_push(const Body& body, const BodyError& known, double ahead_
 Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
                         double friction, double floor_m) {
-    const Body& body = candidate.body;
+    const MassProperties& body = candidate.body;
     const double weight = body.mass_kg * gravity;
     const double height = body.center[2] - candidate.support_height_m;
     if (candidate.support_polygon.empty() || !(weight > 0) || !(height > 0)) return {};

@@ -30,8 +30,8 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
 struct TippingPush {
     double push_N = 0, error_N = 0;  // and one standard error
 };
-TippingPush tipping_push(const Body& body, const BodyError& known, double ahead_m, double aside,
-                         double border_error_m, double arm_m);
+TippingPush tipping_push(const MassProperties& body, const BodyError& known, double ahead_m,
+                         double aside, double border_error_m, double arm_m);
 
 // One standard error of b / h, the tangent of its tilt, as a share of it; 0 where it can't tip.
 double slope_error_share(const Overturning& overturning);

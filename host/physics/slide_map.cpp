@@ -88,7 +88,7 @@ SlideMap::SlideMap(const SolidCells& cells, const CellColumns& columns,
     }
 }
 
-void SlideMap::stand(const Stance& stance) {
+void SlideMap::stand(const KnownFooting& stance) {
     if (stance.polygon.empty() || !(stance.unseen || falls(start_i_, start_j_))) return;
     const double h = cells_.voxel_m;
     std::array<std::int32_t, 2> low{start_i_ + margin_, start_j_ + margin_},

@@ -31,7 +31,7 @@ class SlideMap {
              const Vec3& center, double reach_m, const Unseen& unseen);
 
     // Before anything is asked of the map.
-    void stand(const Stance& stance);
+    void stand(const KnownFooting& stance);
 
     std::int32_t start_i() const { return start_i_; }
     std::int32_t start_j() const { return start_j_; }

@@ -40,8 +40,8 @@ std::vector<Footprint> footprints(const SolidCells& cells, std::span<const std::
 // first. Of an object that is known to stand, of the levels where it does: what it reaches over is
 // not what it slides on.
 void find_support(const SolidCells& cells, const CellColumns& columns,
-                  std::span<const std::int32_t> object, std::int32_t self, const Stance& stance,
-                  Footprint& foot) {
+                  std::span<const std::int32_t> object, std::int32_t self,
+                  const KnownFooting& stance, Footprint& foot) {
     std::map<std::int32_t, std::size_t> votes;
     for (const Footprint::Column& c : foot.columns) {
         const auto [first, last] = columns.at(c.i, c.j);
@@ -297,8 +297,8 @@ Ends border_at(SlideMap& map, std::int32_t i, std::int32_t j, std::int32_t reach
 }
 
 // As far as the way goes and a bit more, or `least` where there is none.
-Landscape::Places places_around(SlideMap& map, const Body& body, double around_m, double friction,
-                                double voxel_m) {
+Landscape::Places places_around(SlideMap& map, const MassProperties& body, double around_m,
+                                double friction, double voxel_m) {
     constexpr std::int32_t most_in_a_row = 63;
     const double weight = body.mass_kg * gravity;
     const std::int32_t reach =
@@ -330,7 +330,7 @@ Landscape::Places places_around(SlideMap& map, const Body& body, double around_m
 
 SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
                       std::span<const std::int32_t> object, std::int32_t self,
-                      const Footprint& foot, const Body& body, double friction,
+                      const Footprint& foot, const MassProperties& body, double friction,
                       const SlideOptions& options) {
     SlideMap map(cells, columns, object, self, foot, body.center, longest_slide_m, options.unseen);
     if (!options.stances.empty()) map.stand(options.stances[static_cast<std::size_t>(self)]);
@@ -387,8 +387,8 @@ std::vector<std::int32_t> object_of_cells(const SolidCells& cells,
 
 std::vector<SlideResult> slide_all(const SolidCells& cells,
                                    std::span<const std::int32_t> object_of_primitive,
-                                   std::span<const Body> objects, std::span<const double> friction,
-                                   const SlideOptions& options) {
+                                   std::span<const MassProperties> objects,
+                                   std::span<const double> friction, const SlideOptions& options) {
     if (friction.size() != objects.size()) {
         throw Error(ErrorKind::usage, "slide_all: " + std::to_string(friction.size()) +
                                           " friction coefficients for " +
@@ -407,7 +407,7 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
     const auto slide = [&](std::size_t o) {
         const auto self = static_cast<std::int32_t>(o);
         find_support(cells, columns, object, self,
-                     options.stances.empty() ? Stance{} : options.stances[o], feet[o]);
+                     options.stances.empty() ? KnownFooting{} : options.stances[o], feet[o]);
         if (!feet[o].stands && !options.stances.empty() && !options.stances[o].polygon.empty()) {
             feet[o].support = static_cast<std::int32_t>(
                                   std::lround(options.stances[o].height_m / cells.voxel_m)) -
@@ -428,7 +428,7 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
 
 std::vector<Landscape::Places> places_of(const SolidCells& cells,
                                          std::span<const std::int32_t> object_of_primitive,
-                                         std::span<const Body> objects,
+                                         std::span<const MassProperties> objects,
                                          std::span<const std::size_t> chosen, double friction,
                                          double reach_m, const Unseen& unseen) {
     const std::vector<std::int32_t> object =

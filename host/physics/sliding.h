@@ -42,7 +42,7 @@ using Polygon = std::vector<std::array<double, 2>>;  // convex, counter-clockwis
 
 // What is known of how an object stood: its polygon is ground, too, where the columns would have it
 // fall where it is, or, if part of what holds it was not seen, anyway. An empty polygon: nothing.
-struct Stance {
+struct KnownFooting {
     Polygon polygon;
     double height_m = 0;  // of the support, where the object's columns rest on nothing
     bool unseen = false;
@@ -52,8 +52,8 @@ struct Stance {
 inline constexpr double longest_slide_m = 3;
 
 struct SlideOptions {
-    bool places = false;                   // whether to look at all places around the object
-    std::span<const Stance> stances = {};  // by object; empty: none of any
+    bool places = false;                         // whether to look at all places around the object
+    std::span<const KnownFooting> stances = {};  // by object; empty: none of any
     std::span<const std::array<double, 2>> ways = {};  // unit, horizontal: to look straight along
     ThreadPool* threads = nullptr;  // to share the objects out among; none: one by one
     Unseen unseen{};                // of the voxels
@@ -74,13 +74,14 @@ struct SlideOptions {
 // Throws Error(usage) where the sizes differ or an object is out of range.
 std::vector<SlideResult> slide_all(const SolidCells& cells,
                                    std::span<const std::int32_t> object_of_primitive,
-                                   std::span<const Body> objects, std::span<const double> friction,
+                                   std::span<const MassProperties> objects,
+                                   std::span<const double> friction,
                                    const SlideOptions& options = {});
 
 // The position landscapes of some of the objects, up to reach_m around each. As slide_all().
 std::vector<Landscape::Places> places_of(const SolidCells& cells,
                                          std::span<const std::int32_t> object_of_primitive,
-                                         std::span<const Body> objects,
+                                         std::span<const MassProperties> objects,
                                          std::span<const std::size_t> chosen, double friction,
                                          double reach_m, const Unseen& unseen = {});
 

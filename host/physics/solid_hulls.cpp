@@ -4,9 +4,9 @@
 #include <tuple>
 #include <utility>
 
+#include "physics/merge_close_points.h"
 #include "physics/qhull.h"
 #include "physics/support_rows.h"
-#include "physics/weld.h"
 #include "solids/cell_shape.h"
 
 namespace topple::physics {
@@ -35,7 +35,7 @@ std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const Bounda
         for (const auto& c : coarse[p]) points.push_back({c[0] * h, c[1] * h, c[2] * h});
         for (const std::size_t b : parts[p]) solids::add_corners(boundary, b, h, points);
         constexpr double alike = 0.005;  // of a voxel
-        points = welded(points, alike * h);
+        points = merge_close_points(points, alike * h);
         if (const auto hull = convex_hull(points)) {
             for (const std::uint32_t v : hull->vertices) out[p].push_back(points[v]);
         } else {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/merge_close_points.h"
 #include "physics/tipping.h"
-#include "physics/weld.h"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -24,7 +24,7 @@ std::vector<Vec3> cut_at_support(const Candidate& candidate, std::span<const Vec
     for (const auto& [x, y] : candidate.support_polygon)
         held.push_back({x - c[0], y - c[1], level});
     constexpr double alike_m = 1e-5;
-    return welded(held, alike_m);
+    return merge_close_points(held, alike_m);
 }
 
 std::shared_ptr<HullWays> ways_of(std::span<const Vec3> vertices) {

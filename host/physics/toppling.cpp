@@ -41,7 +41,7 @@ double Toppling::Tip::across_m_s(std::size_t part, double cosine) const {
     return 1 / std::sqrt(share * energy(row[a - 1]) + (1 - share) * energy(row[a]));
 }
 
-Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability& tipping,
+Toppling::Toppling(const Candidate& candidate, const Extent& body, const Stability& tipping,
                    std::span<const std::array<double, 2>> ways, const SlideResult& sliding,
                    double friction)
     : mass_kg_(candidate.body.mass_kg),

@@ -21,12 +21,12 @@ class Toppling {
   public:
     static constexpr std::size_t heights = 8;  // blows: equal parts of the body's height
 
-    struct Body {
+    struct Extent {
         Symmetric inertia_kg_m2{};  // about the centre of mass
         double top_m = 0;           // of its highest point, grid frame
     };
     // tipping: of exact passes. ways: those that `straight` is along.
-    Toppling(const Candidate& candidate, const Body& body, const Stability& tipping,
+    Toppling(const Candidate& candidate, const Extent& body, const Stability& tipping,
              std::span<const std::array<double, 2>> ways, const SlideResult& sliding,
              double friction);
     // The same on another place of its support.

@@ -8,22 +8,22 @@
 #include "device/device.h"
 #include "device/stage_clock.h"
 #include "io/text.h"
-#include "objects/groundwork.h"
+#include "objects/found_parts.h"
 #include "objects/object_stage.h"
 #include "pipeline/stages.h"
 #include "pipeline/whole_progress.h"
 #include "points/budget.h"
 #include "points/formats/frame_sequence.h"
 #include "points/formats/scan_notes.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "points/voxel_size.h"
 #include "result/assemble.h"
 #include "result/nothing_judged.h"
 #include "safety/disturbances.h"
 #include "safety/safety_stage.h"
-#include "scale/groundwork_file.h"
+#include "scale/parts_cache.h"
 #include "scale/tiled_parse.h"
-#include "solids/voxel_stage.h"
+#include "solids/volume.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -31,7 +31,7 @@ namespace {
 
 using Timings = std::vector<std::pair<std::string, double>>;
 
-// find(device, stage): the groundwork. timings: of the stages before it.
+// find(device, stage): the parts. timings: of the stages before it.
 template <class Find>
 ParseResult run(const std::string& source, const ParseOptions& options, Find find,
                 Timings timings = {}) {
@@ -66,25 +66,23 @@ void refuse_tiles(const ParseOptions& options) {
                     "leave it out");
 }
 
-bool keeps_groundwork(const ParseOptions& options) {
+bool keeps_parts(const ParseOptions& options) {
     return !options.cache_file.empty() && options.tile_m == 0;
 }
 
 // cache: where it was looked for already.
 ParseResult parse_whole(const std::filesystem::path& input, const ParseOptions& options,
-                        GroundworkFile cache, Timings timings) {
+                        PartsCache cache, Timings timings) {
     const auto find = [&](device::Device& device, StageClock& stage) {
-        Ingested ingested = stage("ingest", [&] {
-            Ingested read = ingest(device, input, options);
+        Observation ingested = stage("ingest", [&] {
+            Observation read = observe(device, input, options);
             // Of what can be read: what can't may be of any size.
-            if (keeps_groundwork(options) && !cache.usable())
-                cache = GroundworkFile(input, options);
+            if (keeps_parts(options) && !cache.usable()) cache = PartsCache(input, options);
             return read;
         });
-        Groundwork ground =
-            find_parts(device, std::move(ingested), options, input.string(), stage);
-        if (cache.usable()) stage("cache", [&] { cache.write(ground); });
-        return ground;
+        FoundParts found = find_parts(device, std::move(ingested), options, input.string(), stage);
+        if (cache.usable()) stage("cache", [&] { cache.write(found); });
+        return found;
     };
     return run(input.string(), options, find, std::move(timings));
 }
@@ -114,19 +112,19 @@ ParseResult noted(ParseResult result, const ParseOptions& options,
 }
 
 ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options) {
-    GroundworkFile cache;
+    PartsCache cache;
     Timings timings;
-    if (keeps_groundwork(options) && !options.device) options.device = device::open_device("auto");
+    if (keeps_parts(options) && !options.device) options.device = device::open_device("auto");
     std::error_code error;
-    if (keeps_groundwork(options) && std::filesystem::exists(options.cache_file, error)) {
-        std::optional<Groundwork> ground = StageClock(timings, options)("cache", [&] {
-            cache = GroundworkFile(input, options);
+    if (keeps_parts(options) && std::filesystem::exists(options.cache_file, error)) {
+        std::optional<FoundParts> found = StageClock(timings, options)("cache", [&] {
+            cache = PartsCache(input, options);
             return cache.read();
         });
-        if (ground)
+        if (found)
             return run(
                 input.string(), options,
-                [&](device::Device&, StageClock&) { return *std::move(ground); },
+                [&](device::Device&, StageClock&) { return *std::move(found); },
                 std::move(timings));
     }
     if (std::optional<ParseResult> tiled = parse_tiled(input, options)) return *std::move(tiled);
@@ -156,7 +154,7 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
     const auto parse_view = [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {
-            Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, o); });
+            Observation input = stage("ingest", [&] { return observe_view(device, cloud, o); });
             return find_parts(device, std::move(input), o, source, stage);
         });
     };
@@ -171,7 +169,7 @@ ParseResult parse(const FramesView& frames, const ParseOptions& options) {
     const std::string source = frames.source.empty() ? "frames" : frames.source;
     const auto parse_view = [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {
-            Ingested input = stage("ingest", [&] { return ingest_frames_view(device, frames, o); });
+            Observation input = stage("ingest", [&] { return observe_frames(device, frames, o); });
             return find_parts(device, std::move(input), o, source, stage);
         });
     };

@@ -10,13 +10,13 @@
 #include "result/assemble.h"
 #include "result/labelled_points.h"
 #include "safety/safety_stage.h"
-#include "solids/solid_stage.h"
+#include "solids/find_solids.h"
 
 namespace topple {
 
-Groundwork find_parts(device::Device& device, Ingested input, const ParseOptions& options,
+FoundParts find_parts(device::Device& device, Observation input, const ParseOptions& options,
                       const std::string& source, StageClock& stage) {
-    Groundwork out;
+    FoundParts out;
     out.voxel_m = voxel_for_input(input, options);
     out.offset_m = input.own.offset_m;
     out.image_width = input.image_width;
@@ -40,31 +40,31 @@ Groundwork find_parts(device::Device& device, Ingested input, const ParseOptions
     return out;
 }
 
-ParseResult judge_parts(device::Device& device, Groundwork ground, const ParseOptions& options,
+ParseResult judge_parts(device::Device& device, FoundParts found, const ParseOptions& options,
                         const std::string& source, StageClock& stage) {
     ParseResult result;
     Scene& scene = result.scene;
     scene.source = source;
-    record_run(device, options, ground.voxel_m, scene);
-    scene.offset_m = ground.offset_m;
-    scene.notes = std::move(ground.notes);
-    SolidParts& parts = ground.parts;
+    record_run(device, options, found.voxel_m, scene);
+    scene.offset_m = found.offset_m;
+    scene.notes = std::move(found.notes);
+    SolidParts& parts = found.parts;
     std::shared_ptr<const SolidScene> solids = parts.solids;
     const ObjectStage objects =
-        find_objects(device, options, stage, parts, std::move(ground.weighed));  // 4.1, 3
+        find_objects(device, options, stage, parts, std::move(found.weighed));  // 4.1, 3
     if (objects.taken) {
-        take_away(*objects.taken, *ground.voxels);
+        take_away(*objects.taken, *found.voxels);
         solids = objects.taken->solids;
     }
-    take_over(*solids, *parts.solids, *ground.voxels);
+    clear_lost_labels(*solids, *parts.solids, *found.voxels);
     const SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
-    result.voxels = ground.voxels;
+    result.voxels = found.voxels;
     result.solids = parts.solids;
-    result.image_width = ground.image_width;
-    result.image_height = ground.image_height;
+    result.image_width = found.image_width;
+    result.image_height = found.image_height;
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
-        assemble_points(std::move(ground), objects, safety, scene);
+        assemble_points(std::move(found), objects, safety, scene);
     });
     return result;
 }

@@ -84,7 +84,7 @@ void note_unknown(const geometry::SensorPlaces& sensors, std::size_t points,
 // scale, gap_m: of surfels in views.
 void look_around(device::Device& device, const std::optional<geometry::SingleScan>& scan,
                  const geometry::SurfelScale& scale, double gap_m,
-                 const std::function<void(double)>& tell, Ingested& out) {
+                 const std::function<void(double)>& tell, Observation& out) {
     geometry::VirtualViewOptions options;
     options.tell = tell;
     geometry::SensorPlaces sensors = geometry::sensor_places(out.cloud);
@@ -179,12 +179,12 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
 
 void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
                            const geometry::PointSpacing& spacing,
-                           const std::function<void(double)>& tell, Ingested& out) {
+                           const std::function<void(double)>& tell, Observation& out) {
     look_around(device, scan, view_surfels(spacing, out.cell_m), gap_pitches * spacing.surface_m,
                 tell, out);
 }
 
-void look_from_free_places(device::Device& device, Ingested& out) {
+void look_from_free_places(device::Device& device, Observation& out) {
     look_around(device, std::nullopt, view_cells * out.cell_m, gap_pitches * out.cell_m, {}, out);
 }
 

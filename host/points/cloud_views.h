@@ -6,7 +6,7 @@
 
 #include "device/device.h"
 #include "geometry/surfels.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "points/single_scan.h"
 
 namespace topple {
@@ -17,8 +17,8 @@ namespace topple {
 // about how much is done, 0 to 1; or empty.
 void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
                            const geometry::PointSpacing& spacing,
-                           const std::function<void(double)>& tell, Ingested& out);
+                           const std::function<void(double)>& tell, Observation& out);
 // The same of a part of a building, of which every cell of out.cell_m has a point.
-void look_from_free_places(device::Device& device, Ingested& out);
+void look_from_free_places(device::Device& device, Observation& out);
 
 }  // namespace topple

@@ -14,7 +14,7 @@
 #include "io/text.h"
 #include "points/caller_frames.h"
 #include "points/formats/frame_sequence.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 
 namespace topple {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/number_text.h"
 #include "core/vectors.h"
 #include "io/text.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "points/surface_extent.h"
 #include "topple/error.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/scene_bounds.h"
 #include "geometry/segmentation.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 
 namespace topple {
 namespace {

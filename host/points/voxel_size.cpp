@@ -36,7 +36,7 @@ double voxel_for_scan(double cell_m, double surface_m2, const Bounds<float>& bou
     return coarsest;
 }
 
-double voxel_for_input(const Ingested& input, const ParseOptions& options) {
+double voxel_for_input(const Observation& input, const ParseOptions& options) {
     if (options.voxel_m > 0) return options.voxel_m;
     if (input.voxel_m > 0) return input.voxel_m;
     if (voxel_for_cell(input.cell_m) <= room_voxel_m) return voxel_for_cell(input.cell_m);

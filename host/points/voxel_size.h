@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/scene_bounds.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -31,7 +31,7 @@ double voxel_for_scan(double cell_m, double surface_m2, const Bounds<float>& bou
                       std::uint64_t max_memory_bytes);
 
 // Of a parse: what its options say, else what its input has (a map), else by the above.
-double voxel_for_input(const Ingested& input, const ParseOptions& options);
+double voxel_for_input(const Observation& input, const ParseOptions& options);
 
 // Tiles hold at least a block, tiles::block_edge_m.
 inline constexpr double least_tile_m = 5;

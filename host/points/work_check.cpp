@@ -50,7 +50,7 @@ std::string mend(const OnePiece& piece, double voxel_m, const Budget& budget) {
     return "give a smaller part";
 }
 
-OnePiece piece_of(const Ingested& input, const FramedSurfels& surfels, double voxel_m) {
+OnePiece piece_of(const Observation& input, const FramedSurfels& surfels, double voxel_m) {
     const GridBox box = grid_box(input.cloud, surfels.frame.axes);
     // Of sparse points more than their own cells: gaps between them are closed.
     const double area_m2 = static_cast<double>(surfels.surfels.size()) * surfels.surfels.area_m2;
@@ -81,10 +81,10 @@ void check_work(const std::string& source, const OnePiece& piece, double voxel_m
     budget.begin_work(what, less, one_piece_seconds(piece));
 }
 
-void check_surface(const Ingested& input, double pitch_m, const ParseOptions& options,
+void check_surface(const Observation& input, double pitch_m, const ParseOptions& options,
                    Budget& budget) {
     const CloudView& cloud = input.cloud;
-    if (budget.asked()) return;  // groundwork asks more strictly
+    if (budget.asked()) return;  // find_solids() asks more strictly
     const auto piece = [&](double area_m2, double voxel_m) {
         const double voxels = area_m2 / (voxel_m * voxel_m);  // no fewer in the box
         return OnePiece{static_cast<double>(cloud.size()), voxels, voxels};
@@ -102,12 +102,12 @@ void check_surface(const Ingested& input, double pitch_m, const ParseOptions& op
         sure_bytes(piece(area_m2, voxel_m)), mend(piece(area_m2, voxel_m), voxel_m, budget));
 }
 
-void check_work(const Ingested& input, const FramedSurfels& surfels, double voxel_m,
+void check_work(const Observation& input, const FramedSurfels& surfels, double voxel_m,
                 Budget& budget) {
     check_work(input.cloud.source, piece_of(input, surfels, voxel_m), voxel_m, budget);
 }
 
-void check_memory_of(const Ingested& input, double voxel_m, const ParseOptions& options) {
+void check_memory_of(const Observation& input, double voxel_m, const ParseOptions& options) {
     const CloudView& cloud = input.cloud;
     if (options.max_memory_bytes == 0) return;
     const std::uint64_t need = one_piece_bytes(
@@ -121,7 +121,7 @@ void check_memory_of(const Ingested& input, double voxel_m, const ParseOptions& 
                           : ""));
 }
 
-void fail_without_surface(const Ingested& input, const std::string& source, double extent_m) {
+void fail_without_surface(const Observation& input, const std::string& source, double extent_m) {
     const std::string scale = of_frames(input.origin) && input.frames
                                   ? depth_scale_hint(*input.frames, input.origin)
                                   : small_extent_hint(extent_m, input.origin);

@@ -14,7 +14,7 @@
 #include "objects/told_sentences.h"
 #include "physics/directions.h"
 #include "physics/overturning.h"
-#include "result/explain.h"
+#include "result/explanations.h"
 #include "result/sentences.h"
 #include "result/upright_pieces.h"
 #include "safety/disturbances.h"
@@ -27,7 +27,7 @@ namespace {
 void add_primitives(const SolidParts& parts, const ObjectStage& objects, const ToInput& to_input,
                     Scene& scene) {
     for (std::size_t p = 0; p < objects.bodies.size(); ++p) {
-        const physics::Body& body = objects.bodies[p];
+        const physics::MassProperties& body = objects.bodies[p];
         Primitive out;
         out.id = static_cast<std::int32_t>(p);
         out.object = objects.object_of_primitive[p];
@@ -43,7 +43,7 @@ void add_primitives(const SolidParts& parts, const ObjectStage& objects, const T
     }
 }
 
-Landscape turned(const StableObject& from, const ToInput& to_input) {
+Landscape turned(const Body& from, const ToInput& to_input) {
     Landscape out = from.poses;
     out.places = from.sliding.places;
     for (Vec3& corner : out.hull_m) corner = to_input(corner);
@@ -56,7 +56,7 @@ Landscape turned(const StableObject& from, const ToInput& to_input) {
 }
 
 // By azimuth, which is clockwise from north, +y of the grid.
-DirectedBarrier directed(const StableObject& from, const ToInput& to_input) {
+DirectedBarrier directed(const Body& from, const ToInput& to_input) {
     const physics::Toppling& toppling = *from.toppling;
     static_assert(DirectedBarrier::directions == safety::direction_count);
     DirectedBarrier out;
@@ -86,7 +86,7 @@ DirectedBarrier directed(const StableObject& from, const ToInput& to_input) {
 void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
                  Scene& scene) {
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
-        const StableObject& from = objects.objects[o];
+        const Body& from = objects.objects[o];
         Object to;
         to.id = static_cast<std::int32_t>(o);
         to.primitives = from.candidate.primitives;
@@ -368,9 +368,9 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_short_hazard(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(objects, to_input, scene);
-    foretell(objects, safety, to_input, scene);
-    tell_why(parts, objects, safety.landings, scene);
-    tell_advice(safety.advice, scene);
+    predict_falls(objects, safety, to_input, scene);
+    write_reasons(parts, objects, safety.landings, scene);
+    write_advice(safety.advice, scene);
 }
 
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels) {
@@ -378,9 +378,9 @@ void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::Voxe
         if (!d.exposure.empty()) voxels.add_field(d.name, cells.i, cells.j, cells.k, d.exposure);
 }
 
-void assemble_points(Groundwork ground, const ObjectStage& objects, const SafetyStage& safety,
+void assemble_points(FoundParts found, const ObjectStage& objects, const SafetyStage& safety,
                      Scene& scene) {
-    ScenePoints& points = scene.points = std::move(ground.points);
+    ScenePoints& points = scene.points = std::move(found.points);
     if (objects.taken) {
         for (std::int32_t& p : points.primitive)
             if (p >= 0) p = objects.taken->number[static_cast<std::size_t>(p)];
@@ -389,11 +389,11 @@ void assemble_points(Groundwork ground, const ObjectStage& objects, const Safety
     for (const std::int32_t p : points.primitive)
         points.object.push_back(p < 0 ? -1
                                       : objects.object_of_primitive[static_cast<std::size_t>(p)]);
-    const SolidScene& solids = *ground.parts.solids;
-    ground.voxels->set_objects(objects.object_of_primitive);
-    scene.solid = vdb::solid_voxels(ground.voxels->frame(), solids.with_strays(),
-                                    objects.object_of_primitive);
-    add_exposures(safety, solids.cells(), *ground.voxels);
+    const SolidScene& solids = *found.parts.solids;
+    found.voxels->set_objects(objects.object_of_primitive);
+    scene.solid =
+        vdb::solid_voxels(found.voxels->frame(), solids.with_strays(), objects.object_of_primitive);
+    add_exposures(safety, solids.cells(), *found.voxels);
 }
 
 }  // namespace topple

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "objects/groundwork.h"
+#include "objects/found_parts.h"
 #include "objects/object_stage.h"
 #include "safety/safety_stage.h"
 #include "solids/solid_parts.h"
@@ -27,7 +27,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels);
 
 // Adds the points and the solid voxels, and hands objects and fields to the voxel grids.
-void assemble_points(Groundwork ground, const ObjectStage& objects, const SafetyStage& safety,
+void assemble_points(FoundParts found, const ObjectStage& objects, const SafetyStage& safety,
                      Scene& scene);
 
 }  // namespace topple

@@ -7,7 +7,7 @@ namespace topple {
 namespace {
 
 // The coordinates and colours of the points: moved, where they are the input's own.
-void take_coordinates(Ingested& input, ScenePoints& out) {
+void take_coordinates(Observation& input, ScenePoints& out) {
     if (input.own.size() > 0) {
         out.x = std::move(input.own.x);
         out.y = std::move(input.own.y);
@@ -28,8 +28,8 @@ void take_coordinates(Ingested& input, ScenePoints& out) {
 
 }  // namespace
 
-ScenePoints labelled_points(Ingested& input, const GeometryStage& geometry,
-                            const VoxelStage& voxels, bool coordinates) {
+ScenePoints labelled_points(Observation& input, const Surfaces& geometry, const Volume& voxels,
+                            bool coordinates) {
     ScenePoints out;
     out.index = std::move(input.index);
     out.primitive = numbered(geometry.primitive_of_point, voxels.number);

@@ -9,7 +9,7 @@
 
 #include "io/text.h"
 #include "physics/drop.h"
-#include "result/explain.h"
+#include "result/explanations.h"
 #include "safety/action.h"
 #include "safety/disturbances.h"
 #include "safety/largest_risk.h"
@@ -212,7 +212,7 @@ class Sentence {
     const SolidParts& parts_;
     const ObjectStage& objects_;
     const physics::Swept& swept_;
-    const StableObject& from_;
+    const Body& from_;
     const Object& object_;
     const Why& why_;
 };
@@ -304,8 +304,8 @@ std::string advice_sentence(const Scene& scene, const Object& object, const Sugg
 
 }  // namespace
 
-void tell_why(const SolidParts& parts, const ObjectStage& objects,
-              std::span<const Landing> landings, Scene& scene) {
+void write_reasons(const SolidParts& parts, const ObjectStage& objects,
+                   std::span<const Landing> landings, Scene& scene) {
     const physics::Swept free{};
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         const physics::Swept& swept = o < landings.size() ? landings[o].easiest : free;
@@ -313,7 +313,7 @@ void tell_why(const SolidParts& parts, const ObjectStage& objects,
     }
 }
 
-void tell_advice(std::span<const Suggestion> suggestions, Scene& scene) {
+void write_advice(std::span<const Suggestion> suggestions, Scene& scene) {
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         Object& object = scene.objects[o];
         if (object.grounded) continue;

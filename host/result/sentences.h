@@ -13,11 +13,11 @@ namespace topple {
 
 // Why each object is as safe as it is, in plain words, from its `why` and `fall`. landings: by
 // object, or none, where nothing stops a fall.
-void tell_why(const SolidParts& parts, const ObjectStage& objects,
-              std::span<const Landing> landings, Scene& scene);
+void write_reasons(const SolidParts& parts, const ObjectStage& objects,
+                   std::span<const Landing> landings, Scene& scene);
 
 // What is advised for each object, and what to do about it, in plain words, from what was
 // suggested, by object.
-void tell_advice(std::span<const Suggestion> suggestions, Scene& scene);
+void write_advice(std::span<const Suggestion> suggestions, Scene& scene);
 
 }  // namespace topple

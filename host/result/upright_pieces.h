@@ -4,7 +4,7 @@
 #include <string>
 
 #include "objects/object_stage.h"
-#include "result/explain.h"
+#include "result/explanations.h"
 #include "solids/solid_parts.h"
 
 namespace topple {

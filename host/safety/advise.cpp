@@ -25,7 +25,7 @@ struct Place {
 
 class Mover {
   public:
-    Mover(const SolidScene& solids, std::span<const StableObject> objects,
+    Mover(const SolidScene& solids, std::span<const Body> objects,
           std::span<const safety::RiskObject> at_risk,
           std::span<const safety::Disturbance> disturbances, double friction, double tolerable_J,
           const Unseen& unseen)
@@ -80,7 +80,7 @@ class Mover {
     // Its curve and risk there; false where that is more than is tolerated.
     bool weigh(std::size_t o, const physics::SlideResult& slide, const Elsewhere& elsewhere,
                Place& place) const {
-        const StableObject& object = objects_[o];
+        const Body& object = objects_[o];
         physics::Candidate there = object.candidate;
         const double dx = place.di * cells_.voxel_m, dy = place.dj * cells_.voxel_m;
         there.body.center[0] += dx;
@@ -110,7 +110,7 @@ class Mover {
     }
 
     const SolidCells& cells_;
-    std::span<const StableObject> objects_;
+    std::span<const Body> objects_;
     std::span<const safety::RiskObject> at_risk_;
     std::span<const safety::Disturbance> disturbances_;
     double friction_, tolerable_J_;
@@ -150,8 +150,7 @@ void find_fixing(const safety::RiskObject& object,
 
 }  // namespace
 
-bool stands_against_odds(const StableObject& object,
-                         std::span<const safety::Disturbance> disturbances,
+bool stands_against_odds(const Body& object, std::span<const safety::Disturbance> disturbances,
                          std::span<const std::vector<safety::Risk>> risk, std::size_t o) {
     constexpr double likelier_than_not = 0.5, least_tilt_deg = 3, often = 0.05;  // set by hand
     if (object.grounded) return false;
@@ -162,7 +161,7 @@ bool stands_against_odds(const StableObject& object,
 
 std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::int32_t> object_of_primitive,
-                               std::span<const StableObject> objects,
+                               std::span<const Body> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
@@ -177,7 +176,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
             worst[o] = std::max(worst[o], of_disturbance[o].mean_J);
     }
     std::vector<std::size_t> chosen;  // the riskiest first
-    std::vector<physics::Body> bodies;
+    std::vector<physics::MassProperties> bodies;
     for (std::size_t o = 0; o < at_risk.size(); ++o) {
         bodies.push_back(objects[o].candidate.body);
         if (objects[o].grounded) continue;

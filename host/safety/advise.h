@@ -37,7 +37,7 @@ struct Suggestion {
 inline constexpr std::size_t most_moved = 16;
 std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::int32_t> object_of_primitive,
-                               std::span<const StableObject> objects,
+                               std::span<const Body> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
@@ -48,8 +48,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
 // one of several readings of the scan, none of them likelier than not; or it stood when it was
 // scanned, although a lean by three degrees would upset it, or one in twenty events of a kind that
 // has happened before.
-bool stands_against_odds(const StableObject& object,
-                         std::span<const safety::Disturbance> disturbances,
+bool stands_against_odds(const Body& object, std::span<const safety::Disturbance> disturbances,
                          std::span<const std::vector<safety::Risk>> risk, std::size_t o);
 
 }  // namespace topple

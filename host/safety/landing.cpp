@@ -13,7 +13,7 @@
 namespace topple {
 namespace {
 
-double support_m(const StableObject& from) {
+double support_m(const Body& from) {
     return from.candidate.support_polygon.empty() ? from.lowest_m : from.candidate.support_height_m;
 }
 
@@ -25,7 +25,7 @@ struct Way {
     double barrier_J = 0, release_J = 0, drop_m = 0;
 };
 
-Way easiest_way(const StableObject& from) {
+Way easiest_way(const Body& from) {
     const physics::Instability& how = from.instability;
     Way out{how.mode == "slide", true, how.weakest, {}, how.barrier_J, how.release_J, how.drop_m};
     if (how.edge) out.edge.emplace((*how.edge)[0], (*how.edge)[1]);
@@ -33,7 +33,7 @@ Way easiest_way(const StableObject& from) {
 }
 
 // The easiest one, but one on which it falls where that only comes to lean.
-Way falling_way(const StableObject& from) {
+Way falling_way(const Body& from) {
     Way out = easiest_way(from);
     if (out.slides || out.release_J > 0) return out;
     const physics::TippingWay* least = nullptr;
@@ -54,8 +54,8 @@ Way falling_way(const StableObject& from) {
     return out;
 }
 
-physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls,
-                     const StableObject& from, const Way& way, std::span<const std::int32_t> along,
+physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls, const Body& from,
+                     const Way& way, std::span<const std::int32_t> along,
                      const std::vector<bool>& stops = {}) {
     const Vec3& center = from.candidate.body.center;
     const double support = support_m(from), height = std::max(center[2] - support, 0.0);
@@ -100,7 +100,7 @@ std::vector<Reach> reaches(const SolidScene& solids, const ObjectStage& objects,
         const auto primitive = static_cast<std::size_t>(cells.primitive[c]);
         if (objects.object_of_primitive[primitive] < 0) continue;
         const auto o = static_cast<std::size_t>(objects.object_of_primitive[primitive]);
-        const StableObject& object = objects.objects[o];
+        const Body& object = objects.objects[o];
         if (object.grounded) continue;
         const Vec3 &center = object.candidate.body.center, &way = ways[o].direction;
         const double x = (cells.i[c] + 0.5) * cells.voxel_m - center[0];
@@ -115,7 +115,7 @@ std::vector<Reach> reaches(const SolidScene& solids, const ObjectStage& objects,
     return out;
 }
 
-safety::FallZone zone(const StableObject& from, const Way& way, const physics::Swept& swept,
+safety::FallZone zone(const Body& from, const Way& way, const physics::Swept& swept,
                       const Reach& reach) {
     const Vec3& center = from.candidate.body.center;
     const double support = support_m(from), height = from.highest_m - from.lowest_m;
@@ -135,9 +135,9 @@ safety::FallZone zone(const StableObject& from, const Way& way, const physics::S
     return out;
 }
 
-double hits_J(const StableObject& from, const Way& way, const physics::Swept& swept) {
+double hits_J(const Body& from, const Way& way, const physics::Swept& swept) {
     if (!swept.stopped) return way.release_J;
-    const physics::Body& body = from.candidate.body;
+    const physics::MassProperties& body = from.candidate.body;
     const double sinks_m = body.center[2] - swept.center[2];
     return std::clamp(way.barrier_J + body.mass_kg * physics::gravity * sinks_m, 0.0,
                       way.release_J);
@@ -147,14 +147,14 @@ double hits_J(const StableObject& from, const Way& way, const physics::Swept& sw
 
 std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& objects) {
     std::vector<Way> ways;
-    for (const StableObject& from : objects.objects)
+    for (const Body& from : objects.objects)
         ways.push_back(from.grounded ? Way{} : falling_way(from));
     const std::vector<Reach> reach = reaches(*parts.solids, objects, ways);
     const std::vector<bool> fixed = fixed_primitives(objects.object_of_primitive, objects.objects);
     std::vector<Landing> out(objects.objects.size());
     const std::vector<std::vector<std::int32_t>> taken = taken_along(objects);
     for (std::size_t o = 0; o < out.size(); ++o) {
-        const StableObject& from = objects.objects[o];
+        const Body& from = objects.objects[o];
         if (from.grounded) continue;
         out[o].takes_along = taken[o];
         std::vector<std::int32_t> along;  // primitives

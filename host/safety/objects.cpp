@@ -65,10 +65,10 @@ std::vector<std::vector<std::uint32_t>> cells_of_objects(
     return out;
 }
 
-Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object,
-              const RiskObject& object) {
+MassSpread stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object,
+                  const RiskObject& object) {
     const SolidCells& cells = *surroundings.cells;
-    Stance out;
+    MassSpread out;
     if (of_object.empty()) return out;
     const auto weight = [&](std::uint32_t c) {
         const auto primitive = static_cast<std::size_t>(cells.primitive[c]);
@@ -108,7 +108,7 @@ Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> o
     return out;
 }
 
-double half_base(const RiskObject& object, const Stance& stance, double dx, double dy) {
+double half_base(const RiskObject& object, const MassSpread& stance, double dx, double dy) {
     const auto& polygon = object.support_polygon;
     if (polygon.size() < 3) return std::max(0.0, object.base_width_m / 2 + object.border_shift_m);
     // The nearest edge that the ray leaves through; inside a convex polygon that is the way out.
@@ -125,7 +125,7 @@ double half_base(const RiskObject& object, const Stance& stance, double dx, doub
     return std::isfinite(reach) ? std::max(0.0, reach + object.border_shift_m) : 0.0;
 }
 
-double support_reach(const Stance& stance, const Columns& columns, double dx, double dy) {
+double support_reach(const MassSpread& stance, const Columns& columns, double dx, double dy) {
     const double voxel = columns.voxel_m();
     // The layers below its base that it may rest on.
     constexpr std::int64_t layers = contact_gap + 1;
@@ -142,8 +142,8 @@ double support_reach(const Stance& stance, const Columns& columns, double dx, do
     return INFINITY;
 }
 
-Profile profile(const RiskObject& object, const Stance& stance, const Columns& columns, double dx,
-                double dy) {
+Profile profile(const RiskObject& object, const MassSpread& stance, const Columns& columns,
+                double dx, double dy) {
     return {half_base(object, stance, dx, dy),
             half_base(object, stance, -dx, -dy),
             stance.height(),

@@ -24,7 +24,7 @@ std::vector<std::vector<std::uint32_t>> cells_of_objects(
     std::span<const std::int32_t> object_of_cell, std::size_t objects);
 
 // How an object stands, metres.
-struct Stance {
+struct MassSpread {
     Vec3 center{};                   // of mass
     double bottom_m = 0, top_m = 0;  // its base, and the top of its highest cell
     // Mean of (x - center)^2, of (x - center_x)(y - center_y) and so on over its mass: xx, xy, yy,
@@ -37,21 +37,21 @@ struct Stance {
         return dx * dx * xx + 2 * dx * dy * xy + dy * dy * yy + zz;
     }
 };
-Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object,
-              const RiskObject& object);
+MassSpread stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object,
+                  const RiskObject& object);
 
 // Half base b in horizontal direction (dx, dy): from below the centre of mass to where the support
 // ends that way, 0 where it has ended already. From the support polygon, or half of base_width_m.
-double half_base(const RiskObject& object, const Stance& stance, double dx, double dy);
+double half_base(const RiskObject& object, const MassSpread& stance, double dx, double dy);
 
 // How far the support goes on along (dx, dy) below the object's centre of mass; 0 where there is
 // none to begin with, as below what stands on legs; infinite beyond 3 m.
 class Columns;
-double support_reach(const Stance& stance, const Columns& columns, double dx, double dy);
+double support_reach(const MassSpread& stance, const Columns& columns, double dx, double dy);
 
 // The object seen from the side, `ahead` being (dx, dy).
-Profile profile(const RiskObject& object, const Stance& stance, const Columns& columns, double dx,
-                double dy);
+Profile profile(const RiskObject& object, const MassSpread& stance, const Columns& columns,
+                double dx, double dy);
 
 // Energy that lifts the centre of mass over the base's edge: m g (sqrt(h^2 + b^2) - h).
 double tipping_energy(double mass_kg, double height_m, double half_base_m);

@@ -45,17 +45,17 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
     }
     for (std::size_t p = 0; p < solids.primitives(); ++p)
         s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
-    for (const physics::Body& b : objects.bodies)
+    for (const physics::MassProperties& b : objects.bodies)
         s.density_kg_m3.push_back(b.volume_m3 > 0 ? b.mass_kg / b.volume_m3 : 0);
     return s;
 }
 
 }  // namespace
 
-std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objects) {
+std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
     std::vector<safety::RiskObject> out;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        const StableObject& o = objects[i];
+        const Body& o = objects[i];
         safety::RiskObject r;
         r.id = static_cast<std::int32_t>(i);
         // What is held by nothing that was seen is held by what was not: nobody knows how firmly.

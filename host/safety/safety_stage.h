@@ -28,7 +28,7 @@ struct SafetyStage {
 };
 
 // The objects as the fields and the risk see them; ids are their places in the list.
-std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objects);
+std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects);
 
 SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
                           const ObjectStage& objects, const ParseOptions& options,

@@ -11,10 +11,10 @@
 
 #include "core/field_rules.h"
 #include "device/cancelling.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "scale/binary_file.h"
 #include "scale/work_files.h"
-#include "solids/solid_stage.h"
+#include "solids/find_solids.h"
 
 namespace topple {
 namespace {
@@ -120,7 +120,7 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, quiet);
     const Cancelling cancelling(device, quiet);
-    Ingested input = ingest_part(device, points.cloud, layout.cell_m);
+    Observation input = ingest_part(device, points.cloud, layout.cell_m);
     input.frame = layout.frame;
     constexpr double below = -std::numeric_limits<double>::infinity();
     input.storeys = {{block.floor_m, below, block.top_m}};

@@ -22,7 +22,7 @@
 #include "points/formats/octomap.h"
 #include "points/formats/read_cloud.h"
 #include "points/frames_fusion.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "points/parse_memory.h"
 #include "points/scale_checks.h"
 #include "points/scan_look.h"

@@ -17,11 +17,11 @@
 #include "objects/object_stage.h"
 #include "points/budget.h"
 #include "points/formats/read_cloud.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "points/parse_memory.h"
 #include "points/scale_checks.h"
 #include "result/assemble.h"
-#include "result/explain.h"
+#include "result/explanations.h"
 #include "safety/safety_stage.h"
 #include "scale/block_stage.h"
 #include "scale/blocks.h"
@@ -154,7 +154,7 @@ geometry::SceneFrame find_frame(device::Device& device, const fs::path& folder,
         cloud.y.insert(cloud.y.end(), bin.y.begin(), bin.y.end());
         cloud.z.insert(cloud.z.end(), bin.z.begin(), bin.z.end());
     }
-    const Ingested part = ingest_part(device, std::move(cloud), cell_m);
+    const Observation part = ingest_part(device, std::move(cloud), cell_m);
     const geometry::Surfels surfels = geometry::make_surfels(
         device, part.cloud, 2 * cell_m, part.viewpoints, part.viewpoint_of_point);
     return geometry::find_scene_frame(device, surfels,

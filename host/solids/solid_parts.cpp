@@ -10,7 +10,7 @@ Unseen unseen_of(const SolidParts& parts) {
     };
 }
 
-SolidParts solid_parts(const GeometryStage& geometry, const VoxelStage& voxels) {
+SolidParts solid_parts(const Surfaces& geometry, const Volume& voxels) {
     SolidParts out;
     out.frame = geometry.frame;
     for (std::size_t p = 0; p < voxels.number.size(); ++p) {

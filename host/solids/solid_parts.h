@@ -11,8 +11,8 @@
 #include "geometry/manhattan.h"
 #include "geometry/surface_samples.h"
 #include "geometry/surface_seams.h"
-#include "solids/geometry_stage.h"
-#include "solids/voxel_stage.h"
+#include "solids/surfaces.h"
+#include "solids/volume.h"
 
 namespace topple {
 
@@ -34,6 +34,6 @@ struct SolidParts {
 Unseen unseen_of(const SolidParts& parts);
 
 // Of a scene in one piece.
-SolidParts solid_parts(const GeometryStage& geometry, const VoxelStage& voxels);
+SolidParts solid_parts(const Surfaces& geometry, const Volume& voxels);
 
 }  // namespace topple

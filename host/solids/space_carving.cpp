@@ -24,7 +24,7 @@ struct Stopped {};
 
 }  // namespace
 
-SpaceCarving::SpaceCarving(device::Device& device, const Ingested& input,
+SpaceCarving::SpaceCarving(device::Device& device, const Observation& input,
                            const vdb::VoxelFrame& frame)
     : device_(device), input_(input), frame_(frame) {
     const bool beside = input.frames && !input.frames->one_by_one() && !closes_gaps() &&

@@ -11,7 +11,7 @@
 #include "device/device.h"
 #include "device/stage_clock.h"
 #include "geometry/surface_gaps.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "vdb/voxel_scene.h"
 
 // Visibility carving (paper, 2.2.2): what depth frames say about the voxels.
@@ -24,7 +24,7 @@ namespace topple {
 class SpaceCarving {
   public:
     // The input must stay as long as this.
-    SpaceCarving(device::Device& device, const Ingested& input, const vdb::VoxelFrame& frame);
+    SpaceCarving(device::Device& device, const Observation& input, const vdb::VoxelFrame& frame);
     // Ends what goes on beside.
     ~SpaceCarving();
     SpaceCarving(const SpaceCarving&) = delete;
@@ -51,7 +51,7 @@ class SpaceCarving {
     Carved take_carved(std::span<const std::int32_t> primitive_of_point);
 
     device::Device& device_;
-    const Ingested& input_;
+    const Observation& input_;
     vdb::VoxelFrame frame_;
     // What the other thread has found, once `done_` is set.
     std::shared_ptr<vdb::VoxelScene> scene_;

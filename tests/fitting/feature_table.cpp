@@ -20,10 +20,10 @@
 #include "graph/joint_features.h"
 #include "objects/object_stage.h"
 #include "physics/closed_furniture.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 #include "points/voxel_size.h"
+#include "solids/find_solids.h"
 #include "solids/solid_parts.h"
-#include "solids/solid_stage.h"
 #include "topple/error.h"
 
 namespace {
@@ -45,7 +45,7 @@ void write_objects(device::Device& device, SolidParts parts, const ParseOptions&
                    StageClock& stage, const std::filesystem::path& folder) {
     const ObjectStage found = find_objects(device, options, stage, parts);
     std::vector<double> volume;
-    for (const StableObject& o : found.objects) volume.push_back(o.candidate.body.volume_m3);
+    for (const Body& o : found.objects) volume.push_back(o.candidate.body.volume_m3);
     std::vector<std::int32_t> object = found.object_of_primitive;
     std::vector<float> rows;
     for (const physics::FurnitureLooks& looks :
@@ -63,7 +63,7 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     ParseOptions options;
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
-    Ingested input = ingest(*device, scan, options);
+    Observation input = observe(*device, scan, options);
     const double voxel_m = voxel_for_input(input, options);
     const auto [geometry, voxels] = find_solids(*device, input, voxel_m, options, stage);
     const SolidParts parts = solid_parts(geometry, voxels);

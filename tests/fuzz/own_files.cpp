@@ -17,8 +17,8 @@
 #include "result/solids_file.h"
 #include "scale/block_stage.h"
 #include "scale/blocks.h"
-#include "scale/groundwork_fields.h"
 #include "scale/join_blocks.h"
+#include "scale/parts_fields.h"
 #include "scale/point_spill.h"
 #include "scenes/temporary_folder.h"
 #include "topple/parse.h"
@@ -83,11 +83,11 @@ class Room {
         std::vector<std::pair<std::string, double>> timings;
         StageClock stage(timings, options);
         device::Device& device = *options.device;
-        const Groundwork ground =
-            find_parts(device, ingest_cloud(device, cloud, options), options, "room", stage);
+        const FoundParts ground =
+            find_parts(device, observe_cloud(device, cloud, options), options, "room", stage);
         layout.frame = ground.parts.frame;
         tiles::BinaryWriter file(folder.path() / "parse.cache");
-        write_groundwork(file, ground);
+        topple::write_parts(file, ground);
         file.finish(false);
         ParseResult result = parse(cloud, options);
         const fs::path out = folder.path() / "out";
@@ -221,7 +221,7 @@ void read_as_solids(const fs::path& file) {
 
 void read_as_groundwork(const fs::path& file) {
     tiles::BinaryReader in(file);
-    Groundwork ground = read_groundwork(in);
+    FoundParts ground = read_parts(in);
     if (!chosen<64>()) return;
     const Room& room = Room::get();
     std::vector<std::pair<std::string, double>> timings;

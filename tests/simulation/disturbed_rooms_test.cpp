@@ -128,7 +128,7 @@ double at_time(const Accelerogram& record, double seconds) {
 }
 
 // What slides on the floor would come to its end, where no room ends; what is tall falls farther.
-double far(const StableObject& object) {
+double far(const Body& object) {
     return object.lowest_m < voxel_m ? std::max(0.6, 2 * object.highest_m) : 3;
 }
 
@@ -279,7 +279,7 @@ TEST_F(SlowDisturbances, Human) {
         },
         [&](Simulation& simulation, const test::AssessedRoom& scene, std::size_t o, std::size_t,
             const safety::WorkSample& event, std::uint64_t) {
-            const StableObject& struck = scene.objects[o];
+            const Body& struck = scene.objects[o];
             const Vec3 at{0, 0, struck.lowest_m + event.height_m - struck.candidate.body.center[2]};
             const double scale = std::sqrt(event.W_J / simulation.energy_J(event.direction, at));
             simulation.push({scale * event.direction[0], scale * event.direction[1], 0}, at);

@@ -84,7 +84,7 @@ TEST(Completion, ABoxDoesNotSinkIntoTheTableThatItHides) {
     scene.carve(*device, boxes.intrinsics, boxes.frames);
     fill(*device, scene, {.columns = true, .lowest = 0, .roles = {}});
     ASSERT_GT(completed_below(scene, 2, 0.61), 100u);
-    EXPECT_GT(apply(scene, {}, [](const VolumeView& v) { return settled(v); }), 100u);
+    EXPECT_GT(apply(scene, {}, [](const VolumeView& v) { return support_claims(v); }), 100u);
     EXPECT_EQ(completed_below(scene, 2, 0.61), 0u);
     EXPECT_GT(completed_below(scene, 1, 0.61), 100u);
     EXPECT_GT(completed_below(scene, 2, 0.8), 100u) << "the box itself stays filled";
@@ -104,7 +104,11 @@ TEST(Completion, ABookEndsAtTheLedgeAboveTheNext) {
     const std::size_t before = completed_below(scene, 1, 0.11);
     ASSERT_GT(completed_below(scene, 2, 0.11), 100u);
     const StandsOn on{.above = 2, .below = 1, .height_m = 0.1};
-    EXPECT_GT(apply(scene, walls, [&](const VolumeView& v) { return settled(v, {&on, 1}); }), 100u);
+    EXPECT_GT(apply(scene, walls,
+                    [&](const VolumeView& v) {
+                        return support_claims(v, {&on, 1});
+                    }),
+              100u);
     EXPECT_EQ(completed_below(scene, 2, 0.11), 0u);
     EXPECT_GT(completed_below(scene, 1, 0.11), before + 100);
 }
@@ -119,7 +123,7 @@ TEST(Completion, ASofasArmIsNoThingOnItsSeat) {
     fill(*device, scene, {.columns = true, .lowest = 0, .roles = {Role::wall}});
     const std::size_t before = completed_below(scene, 2, 0.4);
     ASSERT_GT(before, 100u);
-    EXPECT_EQ(apply(scene, walls, [](const VolumeView& v) { return settled(v); }), 0u);
+    EXPECT_EQ(apply(scene, walls, [](const VolumeView& v) { return support_claims(v); }), 0u);
     EXPECT_EQ(completed_below(scene, 2, 0.4), before);
 }
 
@@ -141,7 +145,7 @@ TEST(Completion, ALegGoesOnToTheSeatAndAPostWhoseTopWasSeenDoesNot) {
     };
     const std::int32_t post = highest(3);
     ASSERT_LT(highest(2), 17);
-    EXPECT_GT(apply(scene, walls, [](const VolumeView& v) { return extended(v); }), 0u);
+    EXPECT_GT(apply(scene, walls, [](const VolumeView& v) { return leg_claims(v); }), 0u);
     EXPECT_EQ(highest(2), 19) << "one below the seat";
     EXPECT_EQ(highest(3), post);
 }
@@ -156,7 +160,7 @@ TEST(Completion, ALegGoesOnToAllThatItEndsBelow) {
     VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
     scene.carve(*device, boxes.intrinsics, boxes.frames);
     fill(*device, scene, {.columns = true, .lowest = 0, .roles = {Role::wall}});
-    ASSERT_GT(apply(scene, walls, [](const VolumeView& v) { return extended(v); }), 0u);
+    ASSERT_GT(apply(scene, walls, [](const VolumeView& v) { return leg_claims(v); }), 0u);
     const SolidCells cells = scene.solid_cells();
     std::set<std::int32_t> columns;
     for (std::size_t n = 0; n < cells.size(); ++n)
@@ -176,8 +180,9 @@ TEST(Completion, AFrontBeforeAWallReachesToItUnlessOneSawBehind) {
         const auto device = device::open_native();
         VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
         scene.carve(*device, boxes.intrinsics, boxes.frames);
-        const double claims = static_cast<double>(
-            apply(scene, {Role::wall, Role::wall}, [](const VolumeView& v) { return backed(v); }));
+        const double claims =
+            static_cast<double>(apply(scene, {Role::wall, Role::wall},
+                                      [](const VolumeView& v) { return built_in_claims(v); }));
         return claims / (0.8 * 0.5 * depth / (h * h * h));
     };
     EXPECT_NEAR(backing(0.32, 0), 1, 0.12);
@@ -201,7 +206,7 @@ TEST(Completion, WhatHangsTogetherWithNothingSeenIsNotSolid) {
         test::add_column(cells, 5, 10, 12, bottle, Basis::two_votes);
         test::add_column(cells, 6, 11, 20, bottle, Basis::two_votes);
         test::add_column(cells, 7, 19, 21, table, Basis::surface);
-        return detached(VolumeView(scene, cells, roles));
+        return detached_claims(VolumeView(scene, cells, roles));
     };
     const std::vector<Claim> below = dropped(noise_gap);
     ASSERT_EQ(below.size(), 3u);

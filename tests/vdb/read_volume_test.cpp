@@ -249,7 +249,7 @@ TEST_F(ReadVolume, solid_space_becomes_voxels_without_points) {
                      std::vector<std::int32_t>{0});
     scene.set_free(space);
     SolidCells cells = scene.solid_cells();
-    commit(told(scene, space), scene, cells);
+    commit(map_claims(scene, space), scene, cells);
     EXPECT_EQ(cells.size(), 1u + 6 + 16 * 16 * 16);
     EXPECT_EQ(std::ranges::count(cells.primitive, 0), 1);
     EXPECT_EQ(std::ranges::count(cells.basis, Basis::surface), std::ssize(cells.basis));
@@ -261,7 +261,7 @@ TEST_F(ReadVolume, solid_space_becomes_voxels_without_points) {
                      std::vector<std::int32_t>{0});
     space.solid = {{{0, 0, 1}, {0, 0, 1}}};
     SolidCells fine = finer.solid_cells();
-    commit(told(finer, space), finer, fine);
+    commit(map_claims(finer, space), finer, fine);
     EXPECT_EQ(fine.size(), 1u + 8);
     EXPECT_EQ(finer.state_at(1, 1, 3), State::surface);
 }

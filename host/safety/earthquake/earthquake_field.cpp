@@ -183,7 +183,7 @@ void note_record(const Accelerogram& record, std::vector<std::string>& notes) {
 // Arrows at the contact surface: the objects' lowest cells.
 FieldSamples arrows_below(const SolidCells& solid, std::span<const std::size_t> which,
                           std::span<const std::vector<std::uint32_t>> cells,
-                          std::span<const Stance> stances, std::span<const GroundEvent> events,
+                          std::span<const MassSpread> stances, std::span<const GroundEvent> events,
                           std::span<const double> peaks) {
     ArrowSample arrows;
     for (const std::size_t o : which) {
@@ -229,7 +229,7 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
 
     const auto solid_columns = std::make_shared<const Columns>(*surroundings.cells);
     const Columns& columns = *solid_columns;
-    std::vector<Stance> stances(objects.size());
+    std::vector<MassSpread> stances(objects.size());
     std::vector<ShakenObject> bodies(objects.size()), standing(objects.size());
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;

@@ -20,7 +20,7 @@ constexpr double weakest_g = 0.05, next_g = 1.4, strongest_g = 4;
 constexpr double firm_friction = 2;
 
 // Outward normal of the edge of the support nearest to below the centre.
-std::array<double, 2> weakest_way(const RiskObject& object, const Stance& stance) {
+std::array<double, 2> weakest_way(const RiskObject& object, const MassSpread& stance) {
     std::array<double, 2> way{1, 0};
     double least = std::numeric_limits<double>::infinity();
     const auto& polygon = object.support_polygon;
@@ -150,7 +150,8 @@ std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale) {
     return out;
 }
 
-ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns) {
+ShakenObject shaken_object(const RiskObject& object, const MassSpread& stance,
+                           const Columns& columns) {
     ShakenObject out;
     const auto [x, y] = weakest_way(object, stance);
     out.way = {{{x, y}, {-y, x}}};

@@ -37,7 +37,8 @@ struct ShakenObject {
     std::array<std::array<bool, 2>, 2> lower{{{true, true}, {true, true}}};
 };
 bool falls(const ShakenObject& object, std::size_t plane, const Motion& motion);
-ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns);
+ShakenObject shaken_object(const RiskObject& object, const MassSpread& stance,
+                           const Columns& columns);
 
 // How an object moves in an event, in its two planes, and the correlation of what shakes it in
 // them.

@@ -154,7 +154,7 @@ std::vector<std::array<double, 2>> ways(const WindOptions& options) {
 }
 
 // Of wind that blows along `way`, onto an object's front.
-WindLoad load_on(const RiskObject& object, const Stance& stands, const Frontage& front,
+WindLoad load_on(const RiskObject& object, const MassSpread& stands, const Frontage& front,
                  const std::array<double, 2>& way) {
     return {front.area_m2,
             front.center_m - stands.bottom_m,
@@ -253,7 +253,7 @@ std::vector<double> tipping_gusts(device::Device& device, const Surroundings& su
     std::vector<double> out(objects.size(), std::numeric_limits<double>::quiet_NaN());
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;
-        const Stance stands = stance(surroundings, cells[o], objects[o]);
+        const MassSpread stands = stance(surroundings, cells[o], objects[o]);
         std::vector<WindLoad> loads;
         for (const auto& way : directions()) {
             const Frontage front =
@@ -300,7 +300,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (cells[o].empty() || objects[o].grounded) continue;
-        const Stance stands = stance(surroundings, cells[o], objects[o]);
+        const MassSpread stands = stance(surroundings, cells[o], objects[o]);
         std::vector<std::array<float, 3>> wind(cells[o].size(),
                                                {0, 0, 0});  // sum of directions, count
         std::vector<WindLoad> gales;

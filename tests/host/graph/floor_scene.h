@@ -33,7 +33,7 @@ struct FloorScene {
         if (cells.size() == 0) voxelise();
         return graph::build_contact_graph(device, cells, count);
     }
-    std::vector<physics::Body> bodies(device::Device& device) const {
+    std::vector<physics::MassProperties> bodies(device::Device& device) const {
         const std::vector<double> density(static_cast<std::size_t>(count), 700);
         return physics::mass_properties(device, cells, count, density);
     }

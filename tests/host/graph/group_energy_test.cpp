@@ -14,7 +14,7 @@ namespace {
 // 2 that it would fall; 4 hangs in the air, where it would balance 3.
 struct Tower {
     ContactGraph contacts;
-    std::vector<physics::Body> bodies;
+    std::vector<physics::MassProperties> bodies;
     std::vector<Joint> joints{{0, 1, -2}, {1, 2, -0.5}, {1, 4, 0.25}, {2, 3, 0.75}, {3, 4, 1.5}};
     ShellOdds shell{{6, -3, -4, -5, 1.25}, {true, false, false, false, false}};
     double standing_weight = 2;

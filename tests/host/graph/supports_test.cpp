@@ -23,7 +23,7 @@ class SupportsOf : public test::EachBackend {
         const std::vector<double> joints(contacts.pairs.size(), joint);
         std::vector<std::int32_t> object;
         std::vector<Carried> objects;
-        for (const physics::Body& body : scene.bodies(*device)) {
+        for (const physics::MassProperties& body : scene.bodies(*device)) {
             objects.push_back({object.empty(), body.mass_kg});
             object.push_back(static_cast<std::int32_t>(object.size()));
         }

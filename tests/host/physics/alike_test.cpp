@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "physics/alike.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "physics/repeated_objects.h"
 
 namespace topple::physics {
 namespace {
@@ -24,16 +24,16 @@ const std::vector<FurnitureLooks> things{box(2, 0.4, 1, 0.9, 1),
                                          box(2, 0.4, 0.5, 0.9, 0),
                                          {}};
 
-TEST(Alike, BoxesOfTheSameSidesAre) {
-    const Alike alike = alike_objects(things);
+TEST(Repeated, BoxesOfTheSameSidesAre) {
+    const Repeated alike = find_repeated(things);
     EXPECT_EQ(alike[0], std::vector<std::int32_t>{1});
     EXPECT_EQ(alike[1], std::vector<std::int32_t>{0});
     for (const std::size_t other : {2u, 3u, 4u}) EXPECT_TRUE(alike[other].empty()) << other;
-    EXPECT_TRUE(alike_objects(std::vector<FurnitureLooks>(2))[0].empty()) << "nothing has no box";
+    EXPECT_TRUE(find_repeated(std::vector<FurnitureLooks>(2))[0].empty()) << "nothing has no box";
 }
 
-TEST(Alike, AreClosedTogether) {
-    const std::vector<ClosedOdds> p = closed_odds(things, alike_objects(things));
+TEST(Repeated, AreClosedTogether) {
+    const std::vector<ClosedOdds> p = closed_odds(things, find_repeated(things));
     const auto log_odds = [](double x) { return std::log(x / (1 - x)); };
     const double both = log_odds(probability_closed(things[0])) +
                         log_odds(probability_closed(things[1])) - log_odds(closed_share);
@@ -46,20 +46,20 @@ TEST(Alike, AreClosedTogether) {
 }
 
 // What fills too little of its box to tell has no say.
-TEST(Alike, NeedToFillTheirBoxes) {
+TEST(Repeated, NeedToFillTheirBoxes) {
     std::vector<FurnitureLooks> some{things[0], things[1]};
     some[1].fill = 0.1;
-    const std::vector<ClosedOdds> p = closed_odds(some, alike_objects(some));
+    const std::vector<ClosedOdds> p = closed_odds(some, find_repeated(some));
     EXPECT_NEAR(p[0].probability, probability_closed(some[0]), 1e-12);
     EXPECT_EQ(p[1].probability, 0);
 }
 
 // A wall that a voxel more or less brings within reach tells now one kind, now the other.
-TEST(Alike, WhereVoxelsFallMayTellTheOtherKind) {
+TEST(Repeated, WhereVoxelsFallMayTellTheOtherKind) {
     for (const double usual : {0.0, 1.0}) {
         FurnitureLooks near = box(1.2, 0.3, 0.3, 1, usual);
         const auto closed_ways = [&] {
-            return closed_odds(std::vector<FurnitureLooks>{near}, Alike(1))[0].closed_ways;
+            return closed_odds(std::vector<FurnitureLooks>{near}, Repeated(1))[0].closed_ways;
         };
         near.backing_range = {0, 1};
         EXPECT_NEAR(closed_ways(), (1 + usual) / 3, 1e-3);
@@ -68,7 +68,7 @@ TEST(Alike, WhereVoxelsFallMayTellTheOtherKind) {
     }
 }
 
-TEST(Alike, MassesShowTheirError) {
+TEST(Repeated, MassesShowTheirError) {
     const std::vector<double> mass{50, 100, 3};
     const double off = std::log(2.0) / std::sqrt(2.0);
     const std::vector<std::int32_t> other{1};

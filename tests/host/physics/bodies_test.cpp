@@ -43,7 +43,7 @@ TEST_P(Bodies, MassesMatchPlainSums) {
     for (const std::int32_t side : {1, 2, 9, 30}) {
         const SolidCells cells = random_cells(static_cast<std::uint64_t>(side), side, 5, 70000);
         const std::vector<double> density{700, 500, 1, 2, 3, 9};
-        const std::vector<Body> bodies = mass_properties(*device, cells, 6, density);
+        const std::vector<MassProperties> bodies = mass_properties(*device, cells, 6, density);
         for (std::int32_t label = 0; label < 6; ++label) {
             std::uint64_t count = 0;
             long double sum[3] = {0, 0, 0};
@@ -54,7 +54,7 @@ TEST_P(Bodies, MassesMatchPlainSums) {
                 sum[1] += cells.j[n] + 0.5L;
                 sum[2] += cells.k[n] + 0.5L;
             }
-            const Body& b = bodies[static_cast<std::size_t>(label)];
+            const MassProperties& b = bodies[static_cast<std::size_t>(label)];
             EXPECT_EQ(b.voxels, count);
             EXPECT_NEAR(
                 b.mass_kg,
@@ -73,14 +73,14 @@ TEST_P(Bodies, EveryBackendRatesAlike) {
     const SolidCells cells = random_cells(5, 12, 4);
     const std::vector<double> density(4, 700.0);
     const auto run = [&](device::Device& on) {
-        const std::vector<Body> bodies = mass_properties(on, cells, 4, density);
+        const std::vector<MassProperties> bodies = mass_properties(on, cells, 4, density);
         const SupportTable table(on, cells, 4, geodesic_sphere(16));
         std::vector<Candidate> candidates;
         for (std::int32_t p = 0; p < 4; ++p) {
             for (std::int32_t q = p; q < 4; ++q) {
                 Candidate c;
                 c.primitives = p == q ? std::vector{p} : std::vector{p, q};
-                std::vector<Body> parts;
+                std::vector<MassProperties> parts;
                 for (const std::int32_t r : c.primitives)
                     parts.push_back(bodies[static_cast<std::size_t>(r)]);
                 c.body = combine(parts);

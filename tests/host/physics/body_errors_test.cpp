@@ -17,7 +17,7 @@ namespace {
 constexpr double voxel = 0.02, density = 500;
 
 struct Known {
-    Body body;
+    MassProperties body;
     BodyError error;
     double offset_m = 0;  // of the patches
 };

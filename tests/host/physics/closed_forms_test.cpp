@@ -22,7 +22,7 @@ class ClosedForms : public ::testing::Test {
 
     // Barrier of an exact vertex set. With `held` false it stands on the hull's landscape alone:
     // the polygon given is far wider than the body, so its edges are no way out.
-    Stability exact(const std::vector<Vec3>& vertices, const Body& mass,
+    Stability exact(const std::vector<Vec3>& vertices, const MassProperties& mass,
                     std::vector<std::array<double, 2>> polygon, unsigned frequency,
                     double height = 0, Passes passes = Passes::sampled) {
         const std::vector<std::vector<Vec3>> sets{vertices};
@@ -81,14 +81,14 @@ TEST_F(ClosedForms, BoxOnTheLandscapeAlone) {
 
 // Rings whose facets touch the round body: tipping over a facet is tipping over its rim.
 TEST_F(ClosedForms, OfExactHulls) {
-    const auto barrier = [&](const std::vector<Vec3>& vertices, const Body& mass) {
+    const auto barrier = [&](const std::vector<Vec3>& vertices, const MassProperties& mass) {
         return exact(vertices, mass, everywhere, 16, 0, Passes::exact).barrier_J;
     };
-    const auto over = [](const Body& mass, double rim) {
+    const auto over = [](const MassProperties& mass, double rim) {
         const double h = mass.center[2];
         return mass.mass_kg * gravity * (std::hypot(h, rim) - h);
     };
-    const Body box = body(0.03, {0, 0, 0.25});
+    const MassProperties box = body(0.03, {0, 0, 0.25});
     EXPECT_NEAR(over(box, 0.1), box_short, 1e-5);
     expect_share(barrier(box_vertices(0.3, 0.2, 0.5), box), over(box, 0.1), 1e-6);
     const double touching = 1 / std::cos(pi / 256);
@@ -103,9 +103,9 @@ TEST_F(ClosedForms, OfExactHulls) {
         for (const auto& [x, y] : ring(0.1 * touching * std::cos(angle), 256))
             dome.push_back({x, y, 0.1 * std::sin(angle)});
     }
-    const Body cylinder = body(pi * 0.04 * 0.04 * 0.12, {0, 0, 0.06}),
-               cone = body(pi * 0.01 * 0.3 / 3, {0, 0, 0.075}),
-               hemisphere = body(2.0 / 3 * pi * 0.001, {0, 0, 0.0375});
+    const MassProperties cylinder = body(pi * 0.04 * 0.04 * 0.12, {0, 0, 0.06}),
+                         cone = body(pi * 0.01 * 0.3 / 3, {0, 0, 0.075}),
+                         hemisphere = body(2.0 / 3 * pi * 0.001, {0, 0, 0.0375});
     EXPECT_NEAR(over(cylinder, 0.04), 0.050148, 1e-6);
     EXPECT_NEAR(over(cone, 0.1), 1.078297, 1e-6);
     EXPECT_NEAR(over(hemisphere, 0.1), 0.996348, 1e-6);
@@ -169,7 +169,7 @@ TEST_F(ClosedForms, CylinderOverItsRim) {
 TEST_F(ClosedForms, ConeOnItsBase) {
     std::vector<Vec3> v{{0, 0, 0.3}};
     for (const auto& p : ring(0.1, 256)) v.push_back({p[0], p[1], 0});
-    const Body mass = body(pi * 0.01 * 0.3 / 3, {0, 0, 0.075});
+    const MassProperties mass = body(pi * 0.01 * 0.3 / 3, {0, 0, 0.075});
     const Stability s = exact(v, mass, everywhere, 48);
     expect_share(s.barrier_J, 1.078297, 0.01);
     // Lying, its centre is at 0.071151 m: 4 mm deeper than upright.

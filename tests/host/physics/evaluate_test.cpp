@@ -116,7 +116,7 @@ TEST_F(Evaluate, GroupsCombineTheirMembersRows) {
                                             {-0.2, -0.2, 0}, {0.2, 0.2, 0.54}, 0.01);
     const SupportTable table(*device, cells, 2, geodesic_sphere(16));
     const std::vector<double> density{700, 700};
-    const std::vector<Body> bodies = mass_properties(*device, cells, 2, density);
+    const std::vector<MassProperties> bodies = mass_properties(*device, cells, 2, density);
     Candidate both;
     both.primitives = {0, 1};
     both.body = combine(bodies);

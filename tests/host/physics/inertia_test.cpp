@@ -82,7 +82,7 @@ TEST(Inertia, WholeVoxelsAreCubes) {
 
 TEST(Inertia, OfNothingIsNothing) {
     EXPECT_TRUE(second_moments({}, 0, {}).empty());
-    const auto found = inertia_of_objects(std::vector<Symmetric>(1), std::vector<Body>(1),
+    const auto found = inertia_of_objects(std::vector<Symmetric>(1), std::vector<MassProperties>(1),
                                           std::vector<std::int32_t>{0}, std::vector{wood_kg_m3});
     EXPECT_EQ(found[0], Symmetric{});
 }

@@ -78,7 +78,7 @@ TEST_F(Sliding, WhatReachesOverAShelfSlidesWhereItStands) {
     const std::vector<double> density(3, 700), friction(3, 0.3);
     const std::vector<std::int32_t> own{0, 1, 2};
     const auto bodies = mass_properties(*device, cells, 3, density);
-    std::vector<Stance> stances(3);
+    std::vector<KnownFooting> stances(3);
     EXPECT_TRUE(slide_all(cells, own, bodies, friction, {.stances = stances})[2].found);
     stances[2] = {{{0, 0}, {0.6, 0}, {0.6, 0.2}, {0, 0.2}}, 0, false};
     EXPECT_FALSE(slide_all(cells, own, bodies, friction, {.stances = stances})[2].found);
@@ -143,7 +143,7 @@ TEST_F(Sliding, WhatStoodDoesNotFallWhereItIs) {
     const SlideResult fell = slide_all(cells, own, bodies, friction)[2];
     ASSERT_TRUE(fell.found);
     EXPECT_EQ(fell.distance_m, 0);
-    std::vector<Stance> stances(3);
+    std::vector<KnownFooting> stances(3);
     stances[2] = {{{0, 0.1}, {0.3, 0.1}, {0.3, 0.3}, {0, 0.3}}, 0.5, true};
     const SlideResult stood = slide_all(cells, own, bodies, friction, {.stances = stances})[2];
     ASSERT_TRUE(stood.found);
@@ -288,7 +288,7 @@ TEST_F(Sliding, RefusesWhatDoesNotFit) {
     cells.i = cells.j = cells.k = {0};
     cells.primitive = {0};
     const std::vector<double> friction{0.3};
-    const std::vector<Body> bodies(1);
+    const std::vector<MassProperties> bodies(1);
     EXPECT_THROW(slide_all(cells, {}, bodies, friction), Error);
     EXPECT_THROW(slide_all(cells, {}, bodies, {}), Error);
 }

@@ -99,8 +99,8 @@ inline std::vector<std::array<double, 2>> ring(double r, unsigned n) {
 }
 
 // A body of given volume and centre, of density 700.
-inline physics::Body body(double volume_m3, const Vec3& center) {
-    physics::Body b;
+inline physics::MassProperties body(double volume_m3, const Vec3& center) {
+    physics::MassProperties b;
     b.voxels = 1;
     b.volume_m3 = volume_m3;
     b.mass_kg = 700 * volume_m3;

@@ -29,7 +29,7 @@ std::vector<std::array<double, 2>> sixteen() {
 // A box that stands in the middle of nothing: where its support ends is said by `slides`.
 struct Brick {
     Candidate candidate;
-    Toppling::Body body;
+    Toppling::Extent body;
     Stability tipping;
 
     Brick(double x, double y, double z) {
@@ -92,7 +92,7 @@ TEST(Toppling, TheEdgeAheadIsWhereTheLineLeavesTheFooting) {
         const Toppling::EdgeAhead edge = toppling.edge_ahead({x, y, 0});
         EXPECT_NEAR(edge.distance_m, across ? 0.05 / std::abs(x) : 0.08 / std::abs(y), 1e-6);
         EXPECT_NEAR(edge.cosine, across ? std::abs(x) : std::abs(y), 1e-6);
-        const Body& body = brick.candidate.body;
+        const MassProperties& body = brick.candidate.body;
         const TippingPush push =
             tipping_push(body, {0.1 * body.mass_kg, {}}, edge.distance_m, edge.cosine, 0, 0.25);
         EXPECT_NEAR(push.push_N, body.mass_kg * gravity * edge.distance_m / 0.25, 1e-9);

@@ -109,7 +109,7 @@ TEST_F(Advice, WhatHangsOnNothingSeenIsToBeSeen) {
 
 // What is said to upset it would have done so before it was scanned.
 TEST(StandsAgainstOdds, WhereTheScanIsReadOneWayOfSeveralOrItWouldNotHaveStood) {
-    StableObject object;
+    Body object;
     object.overturning.tilt_deg = 12;
     const auto doubted = [&](double walk, double quake) {
         std::vector<safety::Disturbance> disturbances(2);

@@ -18,7 +18,7 @@ namespace topple::test {
 struct AssessedRoom {
     safety::Surroundings around;
     SolidScene solids;
-    std::vector<StableObject> objects;
+    std::vector<Body> objects;
     std::vector<safety::RiskObject> at_risk;
 
     AssessedRoom(device::Device& device, Room& room, double friction)
@@ -42,7 +42,7 @@ struct AssessedRoom {
                     static_cast<std::int32_t>(o))
                     members.push_back(p);
             }
-            StableObject object;
+            Body object;
             object.grounded = room.objects[o].grounded;
             object.lowest_m = contacts.lowest_m[static_cast<std::size_t>(members.front())];
             object.highest_m = contacts.highest_m[static_cast<std::size_t>(members.front())];

@@ -13,7 +13,7 @@
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
 #include "points/formats/read_cloud.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 
 // Clouds in the caller's memory, whatever their layout.
 namespace topple::test {
@@ -45,10 +45,10 @@ TEST(CloudView, TakesNoCopyOfRecordsOrOfArrays) {
     const SmallRoom room = SmallRoom::scattered();
     const std::vector<Record> records = records_of(room.cloud);
     const ParseOptions options = quick();
-    const Ingested of_records = ingest_view(*options.device, view_of(records), options);
+    const Observation of_records = observe_view(*options.device, view_of(records), options);
     EXPECT_EQ(of_records.own.x.capacity(), 0u);
     EXPECT_EQ(of_records.cloud.y.data(), reinterpret_cast<const std::byte*>(&records[0].y));
-    const Ingested of_arrays = ingest_view(*options.device, room.cloud, options);
+    const Observation of_arrays = observe_view(*options.device, room.cloud, options);
     EXPECT_EQ(of_arrays.own.x.capacity(), 0u);
     EXPECT_EQ(of_arrays.cloud.z.data(), reinterpret_cast<const std::byte*>(room.cloud.z.data()));
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "result/explain.h"
-
 #include <gtest/gtest.h>
 
+#include "result/explanations.h"
 #include "result/sentences.h"
 
 namespace topple {
@@ -13,14 +12,14 @@ namespace {
 std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped = false,
                                 bool building = false,
                                 const std::vector<InstabilityStep>& steps = {}) {
-    StableObject from;
+    Body from;
     from.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     from.tipping.margin_m = -0.25;
     from.instability.mode = "tip";
     from.instability.weakest = {-1, 0, 0};
     from.instability.edge = physics::Ends{Vec3{0, 0, 0}, Vec3{0, 1, 0}};
     ObjectStage objects;
-    objects.objects = {from, StableObject{}};
+    objects.objects = {from, Body{}};
     Scene scene;
     scene.voxel_size_m = 0.02;
     scene.objects.resize(2);
@@ -41,7 +40,7 @@ std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped =
     landings[0].easiest.by = stopped ? 0 : -1;
     SolidParts parts;
     parts.solids = std::make_shared<const SolidScene>(SolidCells{}, std::vector<Role>{Role::wall});
-    tell_why(parts, objects, landings, scene);
+    write_reasons(parts, objects, landings, scene);
     return scene.objects[0].why.sentence;
 }
 
@@ -88,7 +87,7 @@ TEST(Explain, what_the_wall_stops_tells_of_the_harder_way_first) {
 // Floors of scans are not quite level: what slides on one does not fall off it.
 TEST(Explain, what_slides_on_the_floor_falls_off_no_floor) {
     const auto sentence_of_slide = [](double drop_m) {
-        StableObject chair;
+        Body chair;
         chair.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
         chair.tipping.margin_m = 0.25;
         chair.instability.mode = "slide";
@@ -97,7 +96,7 @@ TEST(Explain, what_slides_on_the_floor_falls_off_no_floor) {
         chair.instability.onto = 0;
         chair.sliding.distance_m = 0.12;
         ObjectStage objects;
-        objects.objects = {chair, StableObject{}};
+        objects.objects = {chair, Body{}};
         objects.object_of_primitive = {1, 0};
         graph::Carrying on_floor;
         on_floor.supporter = 0;
@@ -120,7 +119,7 @@ TEST(Explain, what_slides_on_the_floor_falls_off_no_floor) {
         SolidParts parts;
         parts.solids = std::make_shared<const SolidScene>(
             SolidCells{}, std::vector<Role>{Role::floor, Role::none});
-        tell_why(parts, objects, std::vector<Landing>(2), scene);
+        write_reasons(parts, objects, std::vector<Landing>(2), scene);
         return scene.objects[0].why.sentence;
     };
     EXPECT_EQ(
@@ -145,7 +144,7 @@ TEST(Explain, straps_are_told_by_what_they_carry) {
         suggestions[o].kind = Suggestion::Kind::fix;
         suggestions[o].hold = {force_N[o], 1.5};
     }
-    tell_advice(suggestions, scene);
+    write_advice(suggestions, scene);
     const auto told = [&](std::size_t o) { return scene.objects[o].advice.sentence; };
     EXPECT_EQ(told(0),
               "Fasten it to the wall or to what carries it, with a strap or bracket rated for 1 kg "
@@ -174,7 +173,7 @@ TEST(Explain, a_fixing_is_told_with_its_reason_and_what_it_goes_to) {
     suggestions[1].fasten = {.wall = false, .floor = true};
     scene.objects[2].mass_kg = 2;
     suggestions[2].leg_of = 1;
-    tell_advice(suggestions, scene);
+    write_advice(suggestions, scene);
     const auto told = [&](std::size_t o) { return scene.objects[o].advice.sentence; };
     EXPECT_EQ(told(0),
               "Fasten it to the wall or to what carries it, with two straps or brackets, at studs "
@@ -190,7 +189,7 @@ TEST(Explain, a_fixing_is_told_with_its_reason_and_what_it_goes_to) {
         << told(2);
     // On a table, away from walls.
     suggestions[1].fasten = {.wall = false, .floor = false};
-    tell_advice(suggestions, scene);
+    write_advice(suggestions, scene);
     EXPECT_TRUE(told(1).starts_with("Fasten it to what carries it, with a strap or bracket rated"))
         << told(1);
 }

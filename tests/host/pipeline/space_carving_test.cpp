@@ -43,8 +43,8 @@ class Wall final : public FrameStream {
 // A wall, frames of it, and a post beside what they see.
 class Carving : public testing::Test {
   protected:
-    Ingested input_of(std::unique_ptr<Wall> wall, double cell_m = 0.02) {
-        Ingested input;
+    Observation input_of(std::unique_ptr<Wall> wall, double cell_m = 0.02) {
+        Observation input;
         for (int x = -20; x < 20; ++x)
             for (int y = -20; y < 20; ++y) {
                 input.own.x.push_back(static_cast<float>(x) * 0.05f + 0.02f);
@@ -65,7 +65,7 @@ class Carving : public testing::Test {
     static std::shared_ptr<device::Device> device_of(unsigned threads) {
         return device::open_device("native", threads);
     }
-    SpaceCarving::Carved carved(device::Device& device, const Ingested& input) {
+    SpaceCarving::Carved carved(device::Device& device, const Observation& input) {
         SpaceCarving carving(device, input, frame_);
         const std::vector<std::int32_t> label(input.cloud.size(), 3);
         return carving.finish(label, {}, stage_);
@@ -80,9 +80,9 @@ class Carving : public testing::Test {
 
 TEST_F(Carving, GivesTheSameBesideAndAfterwards) {
     const auto one = device_of(1), two = device_of(2);
-    const Ingested first = input_of(std::make_unique<Wall>(40));
+    const Observation first = input_of(std::make_unique<Wall>(40));
     const auto alone = carved(*one, first);
-    const Ingested second = input_of(std::make_unique<Wall>(40));
+    const Observation second = input_of(std::make_unique<Wall>(40));
     const auto beside = carved(*two, second);
     const auto closing = input_of(std::make_unique<Wall>(40), voxel_m);
     const auto late = carved(*two, closing);  // as gaps may come to hold points
@@ -99,10 +99,10 @@ TEST_F(Carving, GivesTheSameBesideAndAfterwards) {
 
 TEST_F(Carving, IsBegunOnlyWhereNothingElseHasASay) {
     const auto one = device_of(1), two = device_of(2);
-    const Ingested dense = input_of(std::make_unique<Wall>(40));
+    const Observation dense = input_of(std::make_unique<Wall>(40));
     EXPECT_FALSE(SpaceCarving(*one, dense, frame_).closes_gaps());
     EXPECT_EQ(frames_->loaded, 0u);  // no thread for it
-    const Ingested sparse = input_of(std::make_unique<Wall>(40), voxel_m);
+    const Observation sparse = input_of(std::make_unique<Wall>(40), voxel_m);
     EXPECT_TRUE(SpaceCarving(*two, sparse, frame_).closes_gaps());
     EXPECT_EQ(frames_->loaded, 0u);
 }
@@ -111,7 +111,7 @@ TEST_F(Carving, WhatFailsBesideIsToldInTheEnd) {
     const auto device = device_of(2);
     auto wall = std::make_unique<Wall>(40);
     wall->broken_from = 20;
-    const Ingested input = input_of(std::move(wall));
+    const Observation input = input_of(std::move(wall));
     try {
         carved(*device, input);
         FAIL() << "nothing was thrown";
@@ -123,7 +123,7 @@ TEST_F(Carving, WhatFailsBesideIsToldInTheEnd) {
 // Nobody waits for a hundred thousand frames.
 TEST_F(Carving, EndsWithWhatHasNoUseForItAnyMore) {
     const auto device = device_of(2);
-    const Ingested input = input_of(std::make_unique<Wall>(100'000));
+    const Observation input = input_of(std::make_unique<Wall>(100'000));
     { const SpaceCarving carving(*device, input, frame_); }
     EXPECT_LT(frames_->loaded, 1000u);
     options_.cancelled = [begun = std::chrono::steady_clock::now()] {

@@ -40,7 +40,7 @@ TEST(VoxelSize, MemoryMakesThemLarger) {
 }
 
 TEST(VoxelSize, WhatIsAskedForOrKnownWins) {
-    Ingested input;
+    Observation input;
     input.cell_m = 0.02;
     ParseOptions options;
     EXPECT_DOUBLE_EQ(voxel_for_input(input, options), 0.02);

@@ -227,7 +227,7 @@ TEST_F(EarthquakeField, SupportPolygonGivesTheBaseEachWay) {
     RiskObject object;
     object.base_width_m = 99;
     object.support_polygon = {{0, 0}, {0.4, 0}, {0.4, 0.2}, {0, 0.2}};
-    Stance stands;
+    MassSpread stands;
     stands.center = {0.1, 0.1, 0};
     EXPECT_NEAR(half_base(object, stands, 1, 0), 0.3, 1e-12);
     EXPECT_NEAR(half_base(object, stands, -1, 0), 0.1, 1e-12);
@@ -247,7 +247,7 @@ TEST_F(EarthquakeField, SupportGoesOnUntilTheTableEnds) {
     const auto surroundings = room.surroundings();
     const auto cells =
         cells_of_objects(movable_object_of_cells(surroundings, room.objects), room.objects.size());
-    const Stance stands = stance(surroundings, cells[id], room.objects[id]);
+    const MassSpread stands = stance(surroundings, cells[id], room.objects[id]);
     const Columns columns(*surroundings.cells);
     EXPECT_NEAR(support_reach(stands, columns, -1, 0), 0.14, 0.011);
     EXPECT_NEAR(support_reach(stands, columns, 1, 0), 0.86, 0.011);
@@ -290,7 +290,7 @@ TEST_F(EarthquakeField, BringsNoMoreThanItTakesToOverturn) {
         }
         object.support_polygon = body.support_polygon;
         object.toppling = std::make_shared<physics::Toppling>(
-            body, physics::Toppling::Body{{1, 1, 1, 0, 0, 0}, 0.4}, tipping,
+            body, physics::Toppling::Extent{{1, 1, 1, 0, 0, 0}, 0.4}, tipping,
             std::vector<std::array<double, 2>>{{1, 0}, {0, 1}, {-1, 0}, {0, -1}},
             physics::SlideResult{}, mu);
         EarthquakeOptions strong;

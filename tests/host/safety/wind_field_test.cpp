@@ -29,7 +29,8 @@ class WindField : public ::testing::Test {
         const auto& own = cells[static_cast<std::size_t>(id)];
         const Columns columns(*surroundings.cells);
         const Frontage front = wind_frontage(*surroundings.cells, columns, own, direction(d), 1.0);
-        const Stance stands = stance(surroundings, own, room.objects[static_cast<std::size_t>(id)]);
+        const MassSpread stands =
+            stance(surroundings, own, room.objects[static_cast<std::size_t>(id)]);
         return {front.area_m2, front.center_m - stands.bottom_m,
                 room.objects[static_cast<std::size_t>(id)].base_width_m / 2, stands.height()};
     }

@@ -25,7 +25,7 @@ constexpr double density = 1;  // a body's mass is its volume
 struct Bounded {
     Scanned scanned;
     BoundaryCells boundary;
-    std::vector<physics::Body> bodies;
+    std::vector<physics::MassProperties> bodies;
 };
 
 Bounded bounded(const std::vector<Box>& boxes, double voxel_m) {
@@ -148,7 +148,7 @@ TEST(Boundary, ACupIsItsWallAndItsBottom) {
         const auto device = device::open_native();
         const BoundaryCells boundary =
             find_boundary(*device, s.cells, s.seen(), s.patches, std::vector<bool>(4, false));
-        const std::vector<physics::Body> bodies = physics::mass_properties(
+        const std::vector<physics::MassProperties> bodies = physics::mass_properties(
             *device, s.cells, 4, std::vector<double>(4, density), boundary);
         const double wall = pi * (outer * outer - inner * inner) * height,
                      bottom = pi * inner * inner * thick;

@@ -68,7 +68,7 @@ class Bridging {
 
 }  // namespace
 
-std::vector<Claim> bridged(const VolumeView& view) {
+std::vector<Claim> gap_claims(const VolumeView& view) {
     Bridging bridging(view);
     for (int axis = 0; axis < 3; ++axis) bridging.along(axis, noise_gap);
     return bridging.claims();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/alike.h"
+#include "physics/repeated_objects.h"
 
 #include <algorithm>
 #include <array>
@@ -27,8 +27,8 @@ bool are_alike(const FurnitureLooks& a, const FurnitureLooks& b) {
 
 }  // namespace
 
-Alike alike_objects(std::span<const FurnitureLooks> looks) {
-    Alike out(looks.size());
+Repeated find_repeated(std::span<const FurnitureLooks> looks) {
+    Repeated out(looks.size());
     for (std::size_t a = 0; a < looks.size(); ++a)
         for (std::size_t b = 0; b < a; ++b) {
             if (!are_alike(looks[a], looks[b])) continue;
@@ -38,7 +38,7 @@ Alike alike_objects(std::span<const FurnitureLooks> looks) {
     return out;
 }
 
-std::vector<ClosedOdds> closed_odds(std::span<const FurnitureLooks> looks, const Alike& alike) {
+std::vector<ClosedOdds> closed_odds(std::span<const FurnitureLooks> looks, const Repeated& alike) {
     const auto chance = [](double log_odds) { return 1 / (1 + std::exp(-log_odds)); };
     const double before = std::log(closed_share / (1 - closed_share));
     const auto tells = [&](std::size_t o) { return looks[o].fill >= least_furniture_fill; };

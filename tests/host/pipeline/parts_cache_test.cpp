@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scale/groundwork_file.h"
+#include "scale/parts_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(GroundworkFile, HoldsAllThatObjectsAreFoundFrom) {
+TEST(PartsCache, HoldsAllThatObjectsAreFoundFrom) {
     const fs::path file = fs::path(::testing::TempDir()) / "topple-groundwork-test.cache";
     ParseOptions options;
     options.device = device::open_device("native");
@@ -26,14 +26,14 @@ TEST(GroundworkFile, HoldsAllThatObjectsAreFoundFrom) {
     room.cloud.blue.assign(room.cloud.size(), 60);
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
-    const Groundwork laid =
-        find_parts(*options.device, ingest_cloud(*options.device, room.cloud, options), options,
+    const FoundParts laid =
+        find_parts(*options.device, observe_cloud(*options.device, room.cloud, options), options,
                    "room", stage);
     // The key is of files: of this test's own source, say.
-    const GroundworkFile cache(__FILE__, options);
+    const PartsCache cache(__FILE__, options);
     ASSERT_TRUE(cache.usable());
     cache.write(laid);
-    const std::optional<Groundwork> read = cache.read();
+    const std::optional<FoundParts> read = cache.read();
     fs::remove(file);
     ASSERT_TRUE(read);
     const SolidParts &was = laid.parts, &is = read->parts;

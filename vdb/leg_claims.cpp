@@ -38,7 +38,7 @@ std::vector<std::vector<Column>> columns_of(const VolumeView& view) {
 
 }  // namespace
 
-std::vector<Claim> extended(const VolumeView& view) {
+std::vector<Claim> leg_claims(const VolumeView& view) {
     const std::vector<std::vector<Column>> columns = columns_of(view);
     const double h = view.voxel_m();
     // A side covers a voxel more where it does not begin with one.

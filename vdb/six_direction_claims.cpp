@@ -187,8 +187,8 @@ Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
 
 }  // namespace
 
-std::vector<Claim> filled(device::Device& device, const VoxelScene& volume,
-                          const FillOptions& options) {
+std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene& volume,
+                                        const FillOptions& options) {
     if (options.votes < 1 || options.votes > 6) {
         throw Error(ErrorKind::usage, "filling: " + std::to_string(options.votes) +
                                           " votes; there are six directions");

@@ -7,25 +7,25 @@
 #include <string>
 
 #include "core/checksum.h"
-#include "objects/groundwork.h"
+#include "objects/found_parts.h"
 #include "topple/parse.h"
 
 namespace topple {
 
-// ParseOptions::cache_file: the groundwork of a scan, with the checksum of all that it depends on:
+// ParseOptions::cache_file: the parts of a scan, with the checksum of all that it depends on:
 // the bytes of the input, the options, the device and the build of this library. It is this
 // library's alone: another build writes another.
-class GroundworkFile {
+class PartsCache {
   public:
-    GroundworkFile() = default;  // none: what is read there is nothing
+    PartsCache() = default;  // none: what is read there is nothing
     // Of the options' device. Not usable for scans that lie in files which only they name.
-    GroundworkFile(const std::filesystem::path& input, const ParseOptions& options);
+    PartsCache(const std::filesystem::path& input, const ParseOptions& options);
 
     bool usable() const { return key_.has_value(); }
     // None where there is none that fits. Of one that is damaged the options' notice is told.
-    std::optional<Groundwork> read() const;
+    std::optional<FoundParts> read() const;
     // Where it can't be written the notice is told; the parse goes on.
-    void write(const Groundwork& ground) const;
+    void write(const FoundParts& ground) const;
 
   private:
     std::filesystem::path file_;

@@ -45,7 +45,7 @@ class Pieces {
 
 }  // namespace
 
-std::vector<Claim> detached(const VolumeView& view) {
+std::vector<Claim> detached_claims(const VolumeView& view) {
     const SolidCells& cells = view.cells();
     Pieces pieces(view);
     std::vector<Claim> out;

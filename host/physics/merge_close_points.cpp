@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/weld.h"
+#include "physics/merge_close_points.h"
 
 #include <array>
 #include <bit>
@@ -18,7 +18,7 @@ std::uint64_t hash(const std::array<std::int64_t, 3>& cell) {
 
 }  // namespace
 
-std::vector<Vec3> welded(const std::vector<Vec3>& points, double tolerance_m) {
+std::vector<Vec3> merge_close_points(const std::vector<Vec3>& points, double tolerance_m) {
     // Cells of twice the tolerance, so that what is within it lies in two of them along each axis.
     // Chains of kept points by their cell's hash: which cell they are of, their distance tells.
     constexpr std::uint32_t none = ~0U;

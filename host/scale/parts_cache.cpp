@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scale/groundwork_file.h"
+#include "scale/parts_cache.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "io/replace_file.h"
 #include "io/text.h"
 #include "scale/binary_file.h"
-#include "scale/groundwork_fields.h"
+#include "scale/parts_fields.h"
 #include "scale/work_files.h"
 #include "topple/version.h"
 
@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes with what is written below.
-constexpr std::string_view groundwork_mark = "topple groundwork 6";
+constexpr std::string_view parts_mark = "topple groundwork 6";
 
 void add_text(Checksum& sum, std::string_view text) {
     const std::uint64_t size = text.size();
@@ -108,18 +108,18 @@ void add_options(Checksum& sum, const ParseOptions& options) {
 
 }  // namespace
 
-GroundworkFile::GroundworkFile(const fs::path& input, const ParseOptions& options)
+PartsCache::PartsCache(const fs::path& input, const ParseOptions& options)
     : file_(options.cache_file), notice_(options.notice) {
     io::check_replaceable_file(file_);
     if (!tiles::has_mark(file_))
         io::fail(file_, "exists and is no cache of topple; choose another name");
     Checksum sum;
-    add_text(sum, groundwork_mark);
+    add_text(sum, parts_mark);
     add_options(sum, options);
     if (add_input(sum, input, options)) key_ = sum.value();
 }
 
-std::optional<Groundwork> GroundworkFile::read() const {
+std::optional<FoundParts> PartsCache::read() const {
     std::error_code error;
     if (!key_ || !fs::is_regular_file(file_, error)) return std::nullopt;
     const auto tell = [&](const std::string& line) {
@@ -128,7 +128,7 @@ std::optional<Groundwork> GroundworkFile::read() const {
     try {
         tiles::BinaryReader file(file_);
         if (file.value<Checksum::Value>() != *key_) return std::nullopt;
-        Groundwork out = read_groundwork(file);
+        FoundParts out = read_parts(file);
         tell("going on from " + file_.filename().string() +
              ", which holds what an earlier parse found");
         return out;
@@ -139,12 +139,12 @@ std::optional<Groundwork> GroundworkFile::read() const {
     }
 }
 
-void GroundworkFile::write(const Groundwork& ground) const {
+void PartsCache::write(const FoundParts& found) const {
     try {
         io::PendingFile pending(file_);
         tiles::BinaryWriter file(pending.path());
         file(*key_);
-        write_groundwork(file, ground);
+        write_parts(file, found);
         file.finish(false);
         pending.commit();
     } catch (const Error& failed) {

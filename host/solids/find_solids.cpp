@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/solid_stage.h"
+#include "solids/find_solids.h"
 
 #include <utility>
 
@@ -8,14 +8,14 @@
 
 namespace topple {
 
-SolidStage find_solids(device::Device& device, const Ingested& input, double voxel_m,
-                       const ParseOptions& options, StageClock& stage, SolidDetail detail) {
+SurfacesAndVolume find_solids(device::Device& device, const Observation& input, double voxel_m,
+                              const ParseOptions& options, StageClock& stage, SolidDetail detail) {
     FramedSurfels surfels = find_surfels(device, input, options, stage);
     if (Budget* budget = Budget::current()) check_work(input, surfels, voxel_m, *budget);
     SpaceCarving carving(device, input, {voxel_m, surfels.frame.axes});
-    SolidStage out;
+    SurfacesAndVolume out;
     out.geometry = find_primitives(device, input, std::move(surfels), stage);       // 2.1
-    out.voxels = make_solids(device, input, out.geometry, carving, stage, detail);  // 2.2
+    out.voxels = fill_volume(device, input, out.geometry, carving, stage, detail);  // 2.2
     return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "result/explain.h"
+#include "result/explanations.h"
 
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,7 @@ double azimuth_deg(const Vec3& way) {
 
 void explain(const ObjectStage& objects, const ToInput& to_input, Scene& scene) {
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-        const StableObject& from = objects.objects[o];
+        const Body& from = objects.objects[o];
         Object& object = scene.objects[o];
         Why& why = object.why;
         if (!from.grounded) {
@@ -32,11 +32,11 @@ void explain(const ObjectStage& objects, const ToInput& to_input, Scene& scene) 
     }
 }
 
-void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
-              Scene& scene) {
+void predict_falls(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
+                   Scene& scene) {
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         Object& object = scene.objects[o];
-        const StableObject& from = objects.objects[o];
+        const Body& from = objects.objects[o];
         object.fall.lands_m = object.center_of_mass_m;
         if (from.grounded) continue;
         object.fall.takes_along = safety.landings[o].takes_along;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/geometry_stage.h"
+#include "solids/surfaces.h"
 
 #include <algorithm>
 #include <utility>
@@ -16,7 +16,7 @@ constexpr std::uint64_t least_surfels = 36;
 
 }  // namespace
 
-FramedSurfels find_surfels(device::Device& device, const Ingested& input,
+FramedSurfels find_surfels(device::Device& device, const Observation& input,
                            const ParseOptions& options, StageClock& stage) {
     FramedSurfels out;
     out.surfels = stage("normals", [&] {
@@ -39,9 +39,9 @@ FramedSurfels find_surfels(device::Device& device, const Ingested& input,
     return out;
 }
 
-GeometryStage find_primitives(device::Device& device, const Ingested& input, FramedSurfels surfels,
-                              StageClock& stage) {
-    GeometryStage g;
+Surfaces find_primitives(device::Device& device, const Observation& input, FramedSurfels surfels,
+                         StageClock& stage) {
+    Surfaces g;
     g.surfels = std::move(surfels.surfels);
     g.frame = std::move(surfels.frame);
     const geometry::Regions regions =
@@ -76,7 +76,7 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input, Fra
     return g;
 }
 
-geometry::SurfaceSeams surface_seams(const GeometryStage& g, std::span<const std::int32_t> number,
+geometry::SurfaceSeams surface_seams(const Surfaces& g, std::span<const std::int32_t> number,
                                      const std::function<bool(std::size_t)>& counts) {
     const geometry::Surfels& s = g.surfels;
     const auto solid = [&](std::size_t surfel) {

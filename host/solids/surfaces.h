@@ -15,12 +15,12 @@
 #include "geometry/surface_samples.h"
 #include "geometry/surface_seams.h"
 #include "geometry/surfels.h"
-#include "points/ingest.h"
+#include "points/observation.h"
 
 // Section 2.1 of the paper: from points to primitives.
 namespace topple {
 
-struct GeometryStage {
+struct Surfaces {
     geometry::Surfels surfels;
     geometry::SceneFrame frame;
     geometry::PrimitiveSet primitives;
@@ -31,17 +31,16 @@ struct GeometryStage {
     std::vector<std::int32_t> region_of_point, primitive_of_point;
 };
 
-FramedSurfels find_surfels(device::Device& device, const Ingested& input,
+FramedSurfels find_surfels(device::Device& device, const Observation& input,
                            const ParseOptions& options, StageClock& stage);
 
 // Of the device it takes the threads alone.
-GeometryStage find_primitives(device::Device& device, const Ingested& input, FramedSurfels surfels,
-                              StageClock& stage);
+Surfaces find_primitives(device::Device& device, const Observation& input, FramedSurfels surfels,
+                         StageClock& stage);
 
 // The seen surface inside solids and at their seams; of all surfels, or of those that count. A pair
 // of neighbours counts with the first of the two. number: the solid of each primitive, -1: none.
-geometry::SurfaceSeams surface_seams(const GeometryStage& geometry,
-                                     std::span<const std::int32_t> number,
+geometry::SurfaceSeams surface_seams(const Surfaces& geometry, std::span<const std::int32_t> number,
                                      const std::function<bool(std::size_t)>& counts = nullptr);
 
 }  // namespace topple

@@ -10,22 +10,22 @@
 #include "device/device.h"
 #include "device/stage_clock.h"
 #include "geometry/surface_samples.h"
-#include "points/ingest.h"
-#include "solids/geometry_stage.h"
+#include "points/observation.h"
 #include "solids/space_carving.h"
+#include "solids/surfaces.h"
 #include "solids/taken_away.h"
 #include "vdb/voxel_scene.h"
 
 // Section 2.2 of the paper: from labelled points to solid voxels.
 namespace topple {
 
-struct VoxelStage {
+struct Volume {
     std::shared_ptr<vdb::VoxelScene> scene;
     std::shared_ptr<const SolidScene> solids;
     // Solid of each of the geometry's primitives; -1: it is a fragment, whose voxels are solid, but
     // no primitive's. Solids keep the order of the primitives.
     std::vector<std::int32_t> number;
-    bool by_sensors = false;  // as Ingested::by_sensors
+    bool by_sensors = false;  // as Observation::by_sensors
 };
 
 // How finely solids are told: by what bounds them within their voxels, or by whole voxels.
@@ -33,12 +33,12 @@ enum class SolidDetail { within_voxels, whole_voxels };
 
 // Voxels, what is left of carving, and completion. In whole voxels the solids have no boundary
 // cells, and the scene no field of fractions.
-VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                       SpaceCarving& carving, StageClock& stage,
-                       SolidDetail detail = SolidDetail::within_voxels);
+Volume fill_volume(device::Device& device, const Observation& input, const Surfaces& geometry,
+                   SpaceCarving& carving, StageClock& stage,
+                   SolidDetail detail = SolidDetail::within_voxels);
 
 // What of the solids is found to be no primitive's, the same cells being solid.
-void take_over(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene);
+void clear_lost_labels(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene);
 
 // What is taken away by hand: voxels that are empty, or others'; primitives have other numbers.
 void take_away(const TakenAway& taken, vdb::VoxelScene& scene);

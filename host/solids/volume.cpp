@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/voxel_stage.h"
+#include "solids/volume.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t pri
 
 // The k of the voxels in which most of the lowest storey's floor lies; the lowest number where
 // there is no floor.
-std::int32_t floor_level(const SolidCells& cells, const GeometryStage& geometry) {
+std::int32_t floor_level(const SolidCells& cells, const Surfaces& geometry) {
     const double top = (geometry.storeys.empty() ? std::numeric_limits<double>::infinity()
                                                  : geometry.storeys.front().top_m) /
                        cells.voxel_m;
@@ -49,7 +49,7 @@ std::int32_t floor_level(const SolidCells& cells, const GeometryStage& geometry)
     return *middle;
 }
 
-std::vector<vdb::StandsOn> ledges(const GeometryStage& geometry) {
+std::vector<vdb::StandsOn> ledges(const Surfaces& geometry) {
     const Vec3& up = geometry.frame.axes[2];
     std::vector<vdb::StandsOn> out;
     for (const geometry::Ledge& l :
@@ -86,7 +86,7 @@ solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPo
     return solids::seen_cells(all, solid, face, axes, voxel_m, threads);
 }
 
-Faces find_faces(device::Device& device, const Ingested& input, const GeometryStage& geometry,
+Faces find_faces(device::Device& device, const Observation& input, const Surfaces& geometry,
                  const geometry::GapPoints& gaps, const std::vector<std::int32_t>& number,
                  double voxel_m, std::span<const Role> roles) {
     const geometry::Regions& faces = geometry.primitives.faces;
@@ -113,8 +113,7 @@ Faces find_faces(device::Device& device, const Ingested& input, const GeometrySt
 
 // Of the shell's solids those that were seen from one side only, by what their surfels' faces look
 // to.
-std::vector<bool> find_sheets(const GeometryStage& geometry,
-                              const std::vector<std::int32_t>& number,
+std::vector<bool> find_sheets(const Surfaces& geometry, const std::vector<std::int32_t>& number,
                               std::span<const Role> roles) {
     const geometry::Surfels& s = geometry.surfels;
     const geometry::Regions& faces = geometry.primitives.faces;
@@ -151,7 +150,7 @@ std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view,
 }
 
 // Heights at which one primitive is known to stand on another.
-std::vector<solids::KnownRest> known_rests(const GeometryStage& geometry,
+std::vector<solids::KnownRest> known_rests(const Surfaces& geometry,
                                            const std::vector<std::int32_t>& number) {
     std::vector<solids::KnownRest> out;
     for (const vdb::StandsOn& on : ledges(geometry)) {
@@ -182,8 +181,8 @@ Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
     return out;
 }
 
-std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Ingested& input,
-                                              const GeometryStage& geometry,
+std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Observation& input,
+                                              const Surfaces& geometry,
                                               const geometry::GapPoints& gaps,
                                               const std::vector<std::int32_t>& number,
                                               const vdb::VoxelScene& volume, SolidCells cells,
@@ -198,7 +197,7 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
                                               std::move(parted.strays), std::move(boundary));
 }
 
-std::shared_ptr<const SolidScene> scene_of_whole_voxels(const GeometryStage& geometry,
+std::shared_ptr<const SolidScene> scene_of_whole_voxels(const Surfaces& geometry,
                                                         const std::vector<std::int32_t>& number,
                                                         const vdb::VoxelScene& volume,
                                                         SolidCells cells, std::vector<Role> roles) {
@@ -249,7 +248,7 @@ void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume) {
     volume.add_field(fraction_field, i, j, k, fraction);
 }
 
-void take_over(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene) {
+void clear_lost_labels(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene) {
     SolidCells cells = before.cells();
     const SolidCells& to = now.cells();
     std::vector<vdb::Claim> claims;
@@ -289,9 +288,9 @@ geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
     return samples;
 }
 
-VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                       SpaceCarving& carving, StageClock& stage, SolidDetail detail) {
-    VoxelStage out;
+Volume fill_volume(device::Device& device, const Observation& input, const Surfaces& geometry,
+                   SpaceCarving& carving, StageClock& stage, SolidDetail detail) {
+    Volume out;
     out.by_sensors = input.by_sensors;
     const double voxel_m = carving.frame().voxel_m;
     geometry::GapPoints gaps;

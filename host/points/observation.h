@@ -44,7 +44,7 @@ void for_each_frame(const FrameStream& frames, ThreadPool& threads,
 constexpr double surfel_cells = 1.85;
 
 // What every later stage starts from, whatever the input was.
-struct Ingested {
+struct Observation {
     ScanOrigin origin = ScanOrigin::cloud_file;
     // The points, in the caller's memory or in `own`: what came from a file or from frames, or lost
     // points that were not finite; then `index` holds the place of each in the arrays or the file.
@@ -82,7 +82,7 @@ double typical_depth(const Intrinsics& intrinsics, std::size_t frames,
                      const std::function<DepthFrame(std::size_t)>& load);
 
 // From then on the normals that the cloud brought count as not given.
-void leave_out_normals(Ingested& input);
+void leave_out_normals(Observation& input);
 
 // What to look at where frames show nothing that makes sense; see scale_checks.h.
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin);
@@ -91,19 +91,20 @@ std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin);
 // others read, they read in a process of their own, unless options.isolate is off.
 ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& options);
 
-Ingested ingest(device::Device& device, const std::filesystem::path& input,
-                const ParseOptions& options);
-Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
-                      ScanOrigin origin = ScanOrigin::cloud_file);
+Observation observe(device::Device& device, const std::filesystem::path& input,
+                    const ParseOptions& options);
+Observation observe_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
+                          ScanOrigin origin = ScanOrigin::cloud_file);
 // The cloud must stay as long as what is returned. Without points that are not finite, no copy of
 // it is made.
-Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options);
+Observation observe_view(device::Device& device, const CloudView& cloud,
+                         const ParseOptions& options);
 
 // The frames must stay as long as what is returned.
-Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
-                            const ParseOptions& options);
+Observation observe_frames(device::Device& device, const FramesView& frames,
+                           const ParseOptions& options);
 
 // A part of a larger cloud, thinned to one point a cell, whose sides are not known.
-Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m);
+Observation ingest_part(device::Device& device, PointCloud cloud, double cell_m);
 
 }  // namespace topple

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "points/ingest.h"
+#include "points/observation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,17 +60,17 @@ std::vector<Vec3> places_of(std::span<const Mat4> poses) {
     return places;
 }
 
-void note_single_frame(Ingested& out) {
+void note_single_frame(Observation& out) {
     out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
 }
 
-void note_colours(bool given, Ingested& out) {
+void note_colours(bool given, Observation& out) {
     if (!given) out.notes.emplace_back(no_colours_note);
 }
 
 // Fuses out.frames, called `source`. poses: as they were given, of each; none of a single frame.
 void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std::string& source,
-                 const ParseOptions& options, Ingested& out) {
+                 const ParseOptions& options, Observation& out) {
     const Intrinsics& k = out.frames->intrinsics();
     out.by_sensors = true;
     // Before anything is made of them.
@@ -113,10 +113,10 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     note_colours(!out.cloud.red.empty(), out);
 }
 
-Ingested ingest_folder(device::Device& device, const std::filesystem::path& folder,
-                       const ParseOptions& options) {
+Observation ingest_folder(device::Device& device, const std::filesystem::path& folder,
+                          const ParseOptions& options) {
     io::FrameSequence sequence = io::FrameSequence::open(folder);
-    Ingested out;
+    Observation out;
     out.origin = ScanOrigin::frames_folder;
     out.camera_up = sequence.mean_camera_up();
     out.doubts = sequence.colours().notes();
@@ -201,7 +201,7 @@ void check_count(const CloudView& cloud) {
 
 // What of normals and colours contradicts the points around is not used. Colours stay in the
 // output.
-void check_attributes(double around_m, Ingested& out) {
+void check_attributes(double around_m, Observation& out) {
     const geometry::GivenAttributes given = geometry::look_at_attributes(out.cloud, around_m);
     const auto percent = [](double share) {
         return std::to_string(std::lround(100 * share)) + " %";
@@ -224,7 +224,7 @@ void check_attributes(double around_m, Ingested& out) {
 }
 
 // All that follows from the points.
-void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested& out) {
+void look_at_cloud(device::Device& device, const ParseOptions& options, Observation& out) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
     const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
@@ -276,7 +276,7 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
 
 }  // namespace
 
-void leave_out_normals(Ingested& input) {
+void leave_out_normals(Observation& input) {
     input.cloud.nx = input.cloud.ny = input.cloud.nz = {};
     input.own.nx = input.own.ny = input.own.nz = {};
 }
@@ -288,9 +288,9 @@ void check_path(const std::filesystem::path& input) {
                     "frames");
 }
 
-Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
-                      ScanOrigin origin) {
-    Ingested out;
+Observation observe_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
+                          ScanOrigin origin) {
+    Observation out;
     out.origin = origin;
     out.own = std::move(cloud);
     if (out.own.height > 1) {
@@ -303,13 +303,14 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
     return out;
 }
 
-Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options) {
+Observation observe_view(device::Device& device, const CloudView& cloud,
+                         const ParseOptions& options) {
     if (options.unit_m != 1) {
         throw Error(ErrorKind::usage,
                     "ParseOptions::unit_m is for files; scale a cloud in memory to metres before "
                     "it is parsed");
     }
-    Ingested out;
+    Observation out;
     out.origin = ScanOrigin::cloud_in_memory;
     out.cloud = cloud;
     if (out.cloud.source.empty()) out.cloud.source = "cloud";
@@ -325,8 +326,8 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
     return out;
 }
 
-Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
-                            const ParseOptions& options) {
+Observation observe_frames(device::Device& device, const FramesView& frames,
+                           const ParseOptions& options) {
     if (options.unit_m != 1) {
         throw Error(ErrorKind::usage,
                     "ParseOptions::unit_m is for files; depth frames have their unit in their "
@@ -335,7 +336,7 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
     }
     auto stream = std::make_unique<CallerFrames>(frames);
     const CallerFrames& given = *stream;  // lives as long as what is returned
-    Ingested out;
+    Observation out;
     out.origin = ScanOrigin::frames_in_memory;
     out.camera_up = io::mean_camera_up(given.poses());
     out.doubts = given.notes();
@@ -348,8 +349,8 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
     return out;
 }
 
-Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
-    Ingested out;
+Observation ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
+    Observation out;
     out.cell_m = cell_m;
     out.own = std::move(cloud);
     out.cloud = out.own;
@@ -377,8 +378,8 @@ std::optional<geometry::SceneFrame> frame_of_map(const std::optional<Vec3>& give
 }
 
 // A volume's surface, and its free space beside what virtual views of the surface find.
-Ingested ingest_volume(device::Device& device, ScannedMap map, const ParseOptions& options) {
-    Ingested out;
+Observation ingest_volume(device::Device& device, ScannedMap map, const ParseOptions& options) {
+    Observation out;
     out.origin = ScanOrigin::map_file;
     out.own = std::move(map.cloud);
     out.cloud = out.own;
@@ -388,8 +389,8 @@ Ingested ingest_volume(device::Device& device, ScannedMap map, const ParseOption
 }
 
 // An OctoMap: what is free and what nobody saw is known, and its voxels are the grid's.
-Ingested ingest_octomap(ScannedMap map, const ParseOptions& options) {
-    Ingested out;
+Observation ingest_octomap(ScannedMap map, const ParseOptions& options) {
+    Observation out;
     out.origin = ScanOrigin::map_file;
     out.own = std::move(map.cloud);
     out.cloud = out.own;
@@ -417,8 +418,8 @@ ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& opt
                            : reader::read_scan(file, options.unit_m, poll);
 }
 
-Ingested ingest(device::Device& device, const std::filesystem::path& input,
-                const ParseOptions& options) {
+Observation observe(device::Device& device, const std::filesystem::path& input,
+                    const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
     if (io::looks_like_sequence(input)) {
         if (options.unit_m != 1) {
@@ -427,7 +428,7 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
                         "have their unit in "
                         "intrinsics.json, as depth_scale");
         }
-        Ingested out = ingest_folder(device, input, options);
+        Observation out = ingest_folder(device, input, options);
         if (out.cloud.size() == 0)
             io::fail(input, "no points were found; " + depth_scale_hint(*out.frames, out.origin));
         return out;
@@ -436,8 +437,8 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
     if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map), options);
     const bool mesh = io::is_mesh(input);
-    Ingested out = ingest_cloud(device, std::move(map.cloud), options,
-                                mesh ? ScanOrigin::mesh_file : ScanOrigin::cloud_file);
+    Observation out = observe_cloud(device, std::move(map.cloud), options,
+                                    mesh ? ScanOrigin::mesh_file : ScanOrigin::cloud_file);
     if (!mesh) note_colours(!out.own.red.empty(), out);
     out.format_up = io::up_of_format(input);
     return out;

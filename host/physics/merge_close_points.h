@@ -9,6 +9,6 @@ namespace topple::physics {
 
 // The points without those that lie within a distance of one that comes before. Hulls of points of
 // which some are all but the same have faces that are no planes.
-std::vector<Vec3> welded(const std::vector<Vec3>& points, double tolerance_m);
+std::vector<Vec3> merge_close_points(const std::vector<Vec3>& points, double tolerance_m);
 
 }  // namespace topple::physics

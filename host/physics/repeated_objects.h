@@ -13,8 +13,8 @@ namespace topple::physics {
 
 // By object, all others whose smallest upright boxes have its sides and height, each to within 15 %
 // of the larger: rising. What has no box has none.
-using Alike = std::vector<std::vector<std::int32_t>>;
-Alike alike_objects(std::span<const FurnitureLooks> looks);
+using Repeated = std::vector<std::vector<std::int32_t>>;
+Repeated find_repeated(std::span<const FurnitureLooks> looks);
 
 struct ClosedOdds {
     double probability = 0;  // that it is closed furniture
@@ -27,7 +27,7 @@ struct ClosedOdds {
 // By object, for what is alike being of one kind: what the looks of each add to the log-odds of
 // closed_share, summed over its own and those that are alike and fill their boxes enough to tell. 0
 // for what does not itself.
-std::vector<ClosedOdds> closed_odds(std::span<const FurnitureLooks> looks, const Alike& alike);
+std::vector<ClosedOdds> closed_odds(std::span<const FurnitureLooks> looks, const Repeated& alike);
 
 // One standard error that the masses of alike things show: their logarithms differ by the root of
 // two times what each is off, in the mean of squares; the mass less than which it then is one

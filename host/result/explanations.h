@@ -52,7 +52,7 @@ double azimuth_deg(const Vec3& way);
 void explain(const ObjectStage& objects, const ToInput& to_input, Scene& scene);
 
 // Fills in each object's `fall` and `advice`, from `why` and the supports.
-void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
-              Scene& scene);
+void predict_falls(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
+                   Scene& scene);
 
 }  // namespace topple

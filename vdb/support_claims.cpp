@@ -188,7 +188,7 @@ class Settling {
 
 }  // namespace
 
-std::vector<Claim> settled(const VolumeView& view, std::span<const StandsOn> on) {
+std::vector<Claim> support_claims(const VolumeView& view, std::span<const StandsOn> on) {
     Settling settling(view);
     std::map<std::int32_t, Stand> stands = settling.stands();
     settling.add(on, stands);

@@ -108,7 +108,7 @@ class Front {
 
 }  // namespace
 
-std::vector<Claim> backed(const VolumeView& view) {
+std::vector<Claim> built_in_claims(const VolumeView& view) {
     const auto flat = static_cast<std::int32_t>(flat_m / view.voxel_m()) + 1,
                deepest = static_cast<std::int32_t>(deepest_m / view.voxel_m());
     const std::vector<Sheet> sheets = sheets_of(view);

@@ -13,7 +13,7 @@
 // paper. Neither corrections nor disturbances, nor what is random, change it.
 namespace topple {
 
-struct Groundwork {
+struct FoundParts {
     double voxel_m = 0;
     Vec3 offset_m{};
     std::vector<std::string> notes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scale/groundwork_fields.h"
+#include "scale/parts_fields.h"
 
 #include <algorithm>
 #include <memory>
@@ -7,7 +7,7 @@
 
 #include "core/field_rules.h"
 #include "core/saved_solids.h"
-#include "solids/voxel_stage.h"
+#include "solids/volume.h"
 
 namespace topple {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 // Metres, and what there may be of anything: what is reckoned with such numbers is finite.
 constexpr auto place = rules::within(-1e7, 1e7), amount = rules::within(0, 1e12);
 
-// Structs with gaps between their members go by members: equal groundwork is equal files.
+// Structs with gaps between their members go by members: equal parts are equal files.
 template <class Io, class Contacts>
 void contact_fields(Io& io, Contacts& c, std::size_t count) {
     using namespace rules;
@@ -145,7 +145,8 @@ void ground_fields(Io& io, Ground& g) {
     io(g.parts.shell_log_odds, length(count), finite);
     io(g.parts.points, length(count));
     sample_fields(io, g.parts.samples, count);
-    io(g.weighed.bodies, length(count), of_all([](const physics::Body& body, const auto& must) {
+    io(g.weighed.bodies, length(count),
+       of_all([](const physics::MassProperties& body, const auto& must) {
            must(body.volume_m3, amount), must(body.mass_kg, amount), must(body.center, place);
        }));
     contact_fields(io, g.weighed.contacts, count);
@@ -161,8 +162,8 @@ void ground_fields(Io& io, Ground& g) {
 
 }  // namespace
 
-Groundwork read_groundwork(tiles::BinaryReader& file) {
-    Groundwork out;
+FoundParts read_parts(tiles::BinaryReader& file) {
+    FoundParts out;
     SavedSolids solids;
     vdb::SavedVoxels voxels;
     ground_fields(file, out);
@@ -180,7 +181,7 @@ Groundwork read_groundwork(tiles::BinaryReader& file) {
     return out;
 }
 
-void write_groundwork(tiles::BinaryWriter& file, const Groundwork& ground) {
+void write_parts(tiles::BinaryWriter& file, const FoundParts& ground) {
     const std::size_t count = ground.parts.model.size();
     const SavedSolids solids = saved(*ground.parts.solids);
     const vdb::SavedVoxels voxels = ground.voxels->saved();
