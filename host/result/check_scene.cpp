@@ -20,16 +20,18 @@ class Checks {
     void need(bool holds, const std::string& what) const {
         if (!holds) fail(file_, what + "; the file is damaged: parse the scan again");
     }
-    // Each field by its rule, and those of what is in the item. place: the item's number.
+    // Each field by its rule, and those of what is in the item. who: names it, or is empty, so that
+    // its fields are named. place: the item's number.
     template <class Item>
     void check(const Item& item, const std::string& who, std::size_t place = 0) const {
         fields(item, [&](const auto& field, const auto& value) {
             using Value = std::remove_cvref_t<decltype(value)>;
+            const std::string named = who.empty() ? field.name : who;
             if constexpr (Listed<Value>)
-                check(value, who, place);
+                check(value, named, place);
             else if constexpr (of_numbers<Value>)
                 if (!holds(field.note.rule, value, place))
-                    need(false, who + problem(field.note.rule));
+                    need(false, named + problem(field.note.rule));
         });
         if constexpr (std::is_same_v<Item, DirectedBarrier>)
             need(complete(item),
@@ -106,7 +108,7 @@ void check_scene(const Scene& scene, const std::filesystem::path& file) {
     for (const Contact& c : scene.contacts) checks.check(c, "a contact");
     for (const Support& s : scene.supports) checks.check(s, "a support");
     for (const AppliedCorrection& c : scene.corrections) checks.check(c, "a correction");
-    checks.check(scene, "manhattan_from_input");
+    checks.check(scene, "");
 }
 
 void check_bodies(const Scene& scene, const std::filesystem::path& file) {
