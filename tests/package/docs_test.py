@@ -6,7 +6,8 @@ Every relative link and picture in README.md, CHANGELOG.md, SECURITY.md, docs an
 of it where it names one; every page of docs is linked from README.md. With the program TOPPLE, every option that a page gives to a command
 of topple is one that the command's --help-all lists, and the files that docs/disturbances.md and docs/corrections.md show are read.
 docs/parameters.md has the constants of the stages as they stand in the code, and all of them. Measured figures in the pages are those of the
-newest row of perf/results. docs/output.md has the fields that FIELDS, the program result_fields, tells of.
+newest row of perf/results. docs/output.md has the fields that FIELDS, the program result_fields, tells of. Folders include those above
+them in the table of docs/architecture.md.
 """
 import glob
 import os
@@ -138,8 +139,10 @@ def check_examples(source, program):
 def constants_of(source):
     """By file, the constants with a fraction of the stages and their values, as they are written."""
     found = {}
-    for folder in ('host/core', 'host/geometry', 'host/graph', 'host/solids', 'host/physics', 'host/safety', 'host/pipeline', 'vdb'):
-        for path in sorted(glob.glob(os.path.join(source, folder, '**', '*.[ch]*'), recursive=True)):
+    for folder in ('core', 'geometry', 'points', 'solids', 'physics', 'graph', 'objects', 'safety', 'result', 'scale', 'pipeline', '../vdb'):
+        for path in sorted(glob.glob(os.path.normpath(os.path.join(source, 'host', folder, '**', '*.[ch]*')), recursive=True)):
+            if re.search(r'/points/formats/|host/.*/(read_\w+|at2|acceleration_units)\.', path):
+                continue  # limits of what files may say
             with open(path, encoding='utf-8') as file:
                 text = re.sub('//.*', '', file.read())
             for listed in re.findall(r'^(?:inline )?constexpr (?:double|float) ([^;]*);', text, re.MULTILINE):
@@ -166,6 +169,24 @@ def check_parameters(source):
     return problems
 
 
+def check_folders(source):
+    """Each folder includes those alone that stand above it in the table of docs/architecture.md."""
+    with open(os.path.join(source, 'docs', 'architecture.md'), encoding='utf-8') as file:
+        rows = re.findall(r'^((?:`[a-z/]+/`(?:, )?)+) \|', file.read(), re.MULTILINE)
+    place = {name: n for n, row in enumerate(rows) for name in re.findall(r'`(?:host/)?(\w+)/`', row)}
+    place = {name: n for name, n in place.items() if name == 'vdb' or os.path.isdir(os.path.join(source, 'host', name))}
+    problems = []
+    for path in glob.glob(os.path.join(source, 'host', '**', '*'), recursive=True) + glob.glob(os.path.join(source, 'vdb', '*')):
+        folder = os.path.relpath(path, source).removeprefix('host/').split('/')[0]
+        if not path.endswith(('.cpp', '.h')) or folder not in place:
+            continue
+        with open(path, encoding='utf-8') as file:
+            included = re.findall(r'^#include "(\w+)/', file.read(), re.MULTILINE)
+        problems += [f'{os.path.relpath(path, source)} includes {other}, which stands below it in docs/architecture.md'
+                     for other in included if place.get(other, -1) > place[folder]]
+    return problems
+
+
 def check_made(source, script, *arguments):
     """What a script writes into pages is there."""
     done = subprocess.run([sys.executable, os.path.join(source, *script), '--check', *arguments, source], stderr=subprocess.PIPE, text=True,
@@ -175,7 +196,7 @@ def check_made(source, script, *arguments):
 
 def main():
     source = sys.argv[1]
-    problems = check_links(source) + check_parameters(source) + check_made(source, ('perf', 'quote'))
+    problems = check_links(source) + check_parameters(source) + check_folders(source) + check_made(source, ('perf', 'quote'))
     if len(sys.argv) > 2:
         problems += check_options(source, sys.argv[2]) + check_examples(source, sys.argv[2])
         problems += check_made(source, ('docs', 'fields'), sys.argv[3])
