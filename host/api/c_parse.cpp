@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "api/c_result.h"
 #include "api/c_support.h"
+#include "core/number_options.h"
 #include "export/formats.h"
 #include "topple/option_names.h"
 
@@ -13,35 +12,20 @@ namespace {
 
 topple_options defaults() {
     const ParseOptions from;
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
     topple_options o{};
     o.size = sizeof(o);
-    o.unit_m = from.unit_m;
+    for (const NumberOption& option : number_options) option.to_c(from, o);
     o.disturbances = TOPPLE_HUMAN | TOPPLE_WIND | TOPPLE_EARTHQUAKE;
     o.walks = from.walks;
     o.seed = from.seed;
-    o.density_kg_m3 = from.density_kg_m3;
-    o.friction = from.friction;
-    o.wind_m_s = from.wind_m_s;
-    o.wind_from_deg = none;
-    o.pga_m_s2 = none;
-    o.tolerable_J = from.tolerable_J;
-    o.grouping_time_s = none;
-    o.contents_kg_m3 = from.contents_kg_m3.value_or(none);
-    o.floor_amplification = from.floor_amplification;
     return o;
-}
-
-std::optional<double> given(double value) {
-    return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
 // The callbacks must not outlive `o`.
 ParseOptions parse_options(const topple_options& o) {
     ParseOptions to;
     if (o.device) to.device = o.device->device;
-    to.voxel_m = o.voxel_m;
-    to.unit_m = o.unit_m;
+    for (const NumberOption& option : number_options) option.from_c(o, to);
     if (o.up[0] != 0 || o.up[1] != 0 || o.up[2] != 0) to.up = Vec3{o.up[0], o.up[1], o.up[2]};
     to.disturbances.clear();
     // A bit for each, in their order.
@@ -57,15 +41,6 @@ ParseOptions parse_options(const topple_options& o) {
     to.walks = o.walks;
     to.seed = o.seed;
     to.max_memory_bytes = o.max_memory_bytes;
-    to.density_kg_m3 = o.density_kg_m3;
-    to.friction = o.friction;
-    to.wind_m_s = o.wind_m_s;
-    to.wind_from_deg = given(o.wind_from_deg);
-    to.pga_m_s2 = given(o.pga_m_s2);
-    to.tolerable_J = o.tolerable_J;
-    to.grouping_time_s = given(o.grouping_time_s);
-    to.contents_kg_m3 = given(o.contents_kg_m3);
-    to.floor_amplification = o.floor_amplification;
     if (o.hazard_points > 0) {
         if (!o.hazard_pga_g || !o.hazard_per_year)
             throw Error(ErrorKind::usage, "hazard_points: " + std::to_string(o.hazard_points) +
@@ -80,7 +55,6 @@ ParseOptions parse_options(const topple_options& o) {
     if (o.corrections_file) to.corrections = read_corrections(o.corrections_file);
     if (o.corrections_json) to.corrections = corrections_of(o.corrections_json, "corrections_json");
     if (o.cache_file) to.cache_file = o.cache_file;
-    to.tile_m = o.tile_m;
     to.coordinates = !o.without_coordinates;
     to.isolate = !o.without_isolation;
     if (o.progress || o.log) {

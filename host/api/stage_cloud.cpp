@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "api/arrays.h"
+#include "core/number_options.h"
 #include "core/room_measures.h"
 #include "geometry/surfels.h"
 #include "io/text.h"
 #include "points/caller_points.h"
 #include "points/scale_checks.h"
 #include "points/sensor_places.h"
-#include "points/voxel_size.h"
 #include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 

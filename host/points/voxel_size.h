@@ -13,10 +13,6 @@ namespace topple {
 // by the surface's own neighbourhoods (geometry/surface_gaps.h).
 inline constexpr double closing_cells = 1.75;
 
-// The finest voxel is below the noise of every sensor of rooms, and far above what overflows; the
-// coarsest hardly shows a room.
-inline constexpr double least_voxel_m = 0.001, largest_voxel_m = 1;
-
 // Things in rooms are measured at this or finer.
 inline constexpr double room_voxel_m = 0.02;
 
@@ -32,8 +28,5 @@ double voxel_for_scan(double cell_m, double surface_m2, const Bounds<float>& bou
 
 // Of a parse: what its options say, else what its input has (a map), else by the above.
 double voxel_for_input(const Observation& input, const ParseOptions& options);
-
-// Tiles hold at least a block, tiles::block_edge_m.
-inline constexpr double least_tile_m = 5;
 
 }  // namespace topple
