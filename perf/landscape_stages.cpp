@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "core/thread_pool.h"
+#include "lab/random.h"
 #include "physics/hull_landscape.h"
 #include "physics/landscape.h"
-#include "scenes/random.h"
 
 namespace topple::perf {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <bit>
 
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
-#include "scenes/temporary_folder.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
+#include "lab/temporary_folder.h"
 #include "topple/export.h"
 #include "topple/parse.h"
 

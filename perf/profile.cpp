@@ -6,8 +6,8 @@
 
 #include <cstdio>
 
+#include "lab/temporary_folder.h"
 #include "perf/measure.h"
-#include "scenes/temporary_folder.h"
 #include "topple/parse.h"
 
 namespace topple::perf {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "lab/scores/score.h"
 #include "perf/measure.h"
-#include "scenes/score.h"
 
 namespace topple::perf {
 

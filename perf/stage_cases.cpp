@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "device/stage_clock.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
 #include "vdb/completion.h"
 
 namespace topple::perf {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "lab/scan/depth_camera.h"
 #include "perf/measure.h"
 #include "points/observation.h"
-#include "scenes/depth_camera.h"
 #include "solids/surfaces.h"
 #include "vdb/voxel_scene.h"
 

@@ -8,8 +8,8 @@
 
 #include "graph/contact_graph.h"
 #include "graph/stable_objects.h"
+#include "lab/random.h"
 #include "physics/drop.h"
-#include "scenes/random.h"
 
 namespace topple::simulation {
 namespace {

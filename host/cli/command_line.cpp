@@ -82,6 +82,9 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {
+        const auto chosen = app.get_subcommands();
+        if (!chosen.empty() && chosen.front()->get_prefix_command())
+            return commands.at(chosen.front())();  // whose help another program has
         return app.exit(done);
     } catch (const CLI::ConversionError& error) {
         // "Could not convert: --wind-from = abc"

@@ -4,14 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/choice.h"
 #include "io/text.h"
-#include "scenes/scan/scan.h"
 #include "topple/crew.h"
 
 // Each command adds its options to the parser and returns what runs it. A command's result is the
@@ -34,34 +32,6 @@ inline std::string number_above_0(const std::string& text) {
     return io::parse_number(text, value) && value > 0 ? "" : text + ": expected a number above 0";
 }
 
-// Adds --furniture, which sets whether generated rooms are the varied ones.
-inline void add_furniture(CLI::App& app, bool& varied) {
-    app.add_option_function<std::string>(
-           "--furniture", [&varied](const std::string& kind) { varied = kind == "varied"; },
-           "plain (boxes, cylinders, cones), or varied (turned, hollow, rounded, splayed, leaning\n"
-           "and piled things, levels, a ceiling)")
-        ->check(one_of({"plain", "varied"}))
-        ->default_str("plain");
-}
-
-// Adds --scan, which sets how a generated room is scanned.
-inline CLI::Option* add_scan(CLI::App& app, scenes::ScanKind& kind) {
-    std::map<std::string, scenes::ScanKind> kinds;
-    std::vector<std::string> names;
-    using enum scenes::ScanKind;
-    for (const auto each : {walk, sparse, cloud, laser, single}) {
-        names.emplace_back(scenes::to_string(each));
-        kinds[names.back()] = each;
-    }
-    return app
-        .add_option_function<std::string>(
-            "--scan", [&kind, kinds](const std::string& name) { kind = kinds.at(name); },
-            "walk: depth and colour frames of a hand-held camera; sparse or cloud: points\n"
-            "fused of such; laser: points from stations; single: one frame without its pose")
-        ->check(one_of(names))
-        ->default_str(scenes::to_string(kind));
-}
-
 // How a parse is one process' part of a job of several. Alone: nothing of it.
 struct Team {
     std::shared_ptr<Crew> crew;
@@ -73,13 +43,18 @@ struct Team {
 inline constexpr const char* parse_purpose = "Parse a scan into solid objects, supports and risks";
 Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& team = {});
 Command add_devices(CLI::App& app);
-Command add_generate(CLI::App& app);
-Command add_evaluate(CLI::App& app);
 Command add_estimate(CLI::App& app);
 Command add_landscape(CLI::App& app);
 Command add_export(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_view(CLI::App& app);
 Command add_perf(CLI::App& app);
+// Those of topple-lab, which then runs in this program's place, so that signals and exit codes are
+// its own.
+inline constexpr const char* generate_purpose =
+    "Make a scan of a furnished room, with its ground truth";
+inline constexpr const char* evaluate_purpose =
+    "Parse generated rooms and judge the results against the truth";
+Command add_lab(CLI::App& app, char** argv);
 
 }  // namespace topple::cli

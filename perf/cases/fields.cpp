@@ -5,8 +5,8 @@
 
 #include "disturbance.hpp"
 #include "disturbance_reach.hpp"
+#include "lab/random.h"
 #include "perf/cases/cases.h"
-#include "scenes/random.h"
 
 namespace topple::perf {
 namespace {

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "group_landscape.hpp"
+#include "lab/random.h"
 #include "perf/cases/cases.h"
-#include "scenes/random.h"
 #include "steepest_descent.hpp"
 #include "support_function.hpp"
 

@@ -3,10 +3,10 @@
 #include <memory>
 #include <numeric>
 
+#include "lab/random.h"
 #include "normal_cluster.hpp"
 #include "perf/cases/cases.h"
 #include "plane_mean.hpp"
-#include "scenes/random.h"
 #include "voxel_normals.hpp"
 
 namespace topple::perf {

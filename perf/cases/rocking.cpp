@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "lab/random.h"
 #include "perf/cases/cases.h"
-#include "scenes/random.h"
 
 namespace topple::perf {
 namespace {

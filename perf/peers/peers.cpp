@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
+#include "lab/scores/score.h"
 #include "perf/peers/cloud_peers.h"
 #include "perf/peers/octomap_carving.h"
 #include "perf/peers/pcl_segmentation.h"
-#include "scenes/score.h"
 
 namespace topple::perf {
 namespace {

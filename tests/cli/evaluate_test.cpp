@@ -50,6 +50,17 @@ TEST_F(Evaluate, prints_tables_of_groupings_and_fits_one_of_them) {
     EXPECT_NE(weights.out.find(" joints of 1 room"), std::string::npos) << weights.out;
 }
 
+TEST_F(Evaluate, says_which_program_is_missing) {
+    std::filesystem::create_directory(in("alone"));
+    std::filesystem::copy_file(TOPPLE_PROGRAM, in("alone/topple"));
+    const std::string command =
+        in("alone/topple").string() + " generate room 2> " + in("said").string();
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 2);
+    EXPECT_NE(bytes_of_file(in("said")).find("build the target topple-lab"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(in("room")));
+}
+
 TEST_F(Evaluate, leaves_nothing_when_interrupted) {
     bool sent = false;
     const Finished done = run({"evaluate", "--seeds", "3", "--frames", "20", "-o", "judged"},

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 
 // Inputs that are damaged, or odd, or hardly there.
 namespace topple::test {

@@ -118,7 +118,7 @@ TEST_F(NamesOfInterfaces, AreTheirOwn) {
 
 // The texts in the library's sources name options as members, and none that the table lacks.
 TEST(OptionNames, HoldAllThatMessagesName) {
-    const std::set<std::string> programs{"cli", "evaluation", "mpi", "scenes"};
+    const std::set<std::string> programs{"cli", "lab", "mpi"};
     // Commands to type, and arguments of programs that are started.
     const std::set<std::string> commands{"write_outputs.cpp"};
     const std::regex text(R"("(?:[^"\\\n]|\\.)*")"),

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "cli/program.h"
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 
 // Where results go, and what is left where there are none.
 namespace topple::test {

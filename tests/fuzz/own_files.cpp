@@ -12,6 +12,7 @@
 #include "device/devices.h"
 #include "export/sim_scene.h"
 #include "io/text.h"
+#include "lab/temporary_folder.h"
 #include "objects/object_stage.h"
 #include "pipeline/stages.h"
 #include "result/solids_file.h"
@@ -20,7 +21,6 @@
 #include "scale/join_blocks.h"
 #include "scale/parts_fields.h"
 #include "scale/point_spill.h"
-#include "scenes/temporary_folder.h"
 #include "topple/parse.h"
 
 namespace topple::fuzz {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fuzz/readers.h"
-#include "scenes/temporary_folder.h"
+#include "lab/temporary_folder.h"
 
 namespace topple::fuzz {
 namespace {

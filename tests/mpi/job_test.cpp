@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
-#include "scenes/building.h"
-#include "scenes/temporary_folder.h"
+#include "lab/rooms/building.h"
+#include "lab/temporary_folder.h"
 
 // topple-mpi as a job of several ranks on this machine.
 namespace topple::test {

@@ -11,9 +11,9 @@
 #include "export/write_urdf.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 #include "mujoco/running.h"
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
 #include "topple/parse.h"
 
 // Exports as MuJoCo reads and runs them.

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <thread>
 
+#include "lab/temporary_folder.h"
 #include "parses/c_arguments.h"
 #include "parses/c_stage_calls.h"
-#include "scenes/temporary_folder.h"
 
 namespace topple::parses {
 namespace {

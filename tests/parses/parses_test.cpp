@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "lab/temporary_folder.h"
 #include "parses/c_calls.h"
 #include "parses/try_parse.h"
-#include "scenes/temporary_folder.h"
 
 namespace topple::parses {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "host/io/files.h"
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 #include "simulation/simulation.h"
 #include "topple/parse.h"
 

@@ -12,7 +12,7 @@
 #include "export/write_usd.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
-#include "scenes/temporary_folder.h"
+#include "lab/temporary_folder.h"
 #include "topple/parse.h"
 
 namespace topple::exports::test {

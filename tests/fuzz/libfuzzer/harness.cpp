@@ -6,7 +6,7 @@
 
 #include "fuzz/libfuzzer/file_in_memory.h"
 #include "fuzz/readers.h"
-#include "scenes/temporary_folder.h"
+#include "lab/temporary_folder.h"
 
 // libFuzzer's entry: TOPPLE_READER names the reader.
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 #include "topple/frame_labels.h"
 #include "topple/parse.h"
 #include "topple/topple.h"

@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 
 // Depth frames tell in which convention their poses were given.
 namespace topple {

@@ -9,8 +9,8 @@
 
 #include "core/vectors.h"
 #include "host/physics/solids.h"
+#include "lab/random.h"
 #include "physics/qhull.h"
-#include "scenes/random.h"
 
 // Convex hulls, for tests of pose landscapes.
 namespace topple::test {

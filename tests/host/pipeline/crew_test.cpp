@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "lab/rooms/building.h"
+#include "lab/temporary_folder.h"
 #include "scale/task_list.h"
-#include "scenes/building.h"
-#include "scenes/temporary_folder.h"
 #include "topple/error.h"
 #include "topple/parse.h"
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 #include "topple/error.h"
 
 // What is noted about a depth camera that may mean something else than it says.

@@ -15,7 +15,7 @@
 #include "host/io/files.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_walk.h"
-#include "scenes/files.h"
+#include "lab/scan/files.h"
 
 // Depth frames in the caller's memory: the same as those of a folder.
 namespace topple::test {

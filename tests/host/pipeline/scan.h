@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "host/io/files.h"
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
-#include "scenes/score.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
+#include "lab/scores/score.h"
 #include "topple/device.h"
 #include "topple/parse.h"
 

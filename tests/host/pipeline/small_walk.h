@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
 #include "topple/frames_view.h"
 
 namespace topple::test {

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "lab/rooms/building.h"
+#include "lab/temporary_folder.h"
 #include "points/formats/read_cloud.h"
-#include "scenes/building.h"
-#include "scenes/temporary_folder.h"
 #include "topple/parse.h"
 
 namespace topple {

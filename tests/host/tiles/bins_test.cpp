@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/random.h"
+#include "lab/temporary_folder.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 #include "scale/work_files.h"
-#include "scenes/temporary_folder.h"
 #include "topple/error.h"
 
 namespace topple::tiles {

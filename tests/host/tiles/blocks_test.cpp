@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
+#include "lab/temporary_folder.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
-#include "scenes/temporary_folder.h"
 
 namespace topple::tiles {
 namespace {

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "lab/temporary_folder.h"
 #include "scale/binary_file.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 #include "scale/work_files.h"
-#include "scenes/temporary_folder.h"
 #include "topple/error.h"
 
 namespace topple::tiles {

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <string>
 
+#include "lab/temporary_folder.h"
 #include "parses/c_calls.h"
 #include "parses/try_parse.h"
-#include "scenes/temporary_folder.h"
 
 int main(int argc, char** argv) {
     const std::string kind = argc == 4 ? argv[1] : "";

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "lab/scan/scan.h"
+#include "topple/parse.h"
+
+// Parses of scans of the families of rooms (scenes/kinds/kinds.h), judged by what moves as one.
+namespace topple::evaluation {
+
+// A point's true object is that of the nearest point of truth within 6 cm. All that is fixed to the
+// building is one ground with it. Judged are loose objects with 150 cm^2 in view and 30 points of
+// the scan; rows and loads that the truth does not tell apart are none. NaN: there was none.
+struct KindScore {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    std::string kind;
+    std::uint64_t seed = 0;
+    std::size_t points = 0, objects = 0;  // of the scan; judged
+    // Mean over objects of the best IoU with a found object that is not grounded; share above 0.5.
+    double miou = none, found = none;
+    // The latter if every primitive were an object of its own, and if primitives were grouped by
+    // the true object that most of each is.
+    double found_alone = none, found_best = none;
+    // Pairs of touching primitives: those of one true object that are in one found object, and the
+    // share of truly fixed ones among those that are in one found object.
+    double joint_recall = none, joint_precision = none;
+    // Supports between objects that were found, and found ones that are true.
+    double support_recall = none, support_precision = none;
+    double swallowed = none;  // share of the judged objects' points in the ground
+    double parse_s = 0;
+};
+KindScore judge_kind(const scenes::World& world, const scenes::Scan& scan, const Scene& scene);
+
+struct KindOptions {
+    std::string kind;
+    scenes::ScanOptions scan;
+    ParseOptions parse;
+};
+// Makes the room and the scan of a seed, parses and judges it. Throws what these throw.
+KindScore scan_and_judge(const KindOptions& options);
+
+// A row of means for each kind, and of all.
+std::string kinds_table(const std::vector<KindScore>& scores);
+std::string kinds_csv(const std::vector<KindScore>& scores);
+
+}  // namespace topple::evaluation

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
+#include "lab/scores/score.h"
+#include "topple/parse.h"
+
+// One generated room: scanned, parsed, judged.
+namespace topple::evaluation {
+
+struct RoomOptions {
+    scenes::RoomOptions room;
+    scenes::CameraOptions camera;
+    ParseOptions parse;
+};
+
+struct Room {
+    scenes::World world;
+    scenes::CameraOptions camera;
+    scenes::Sequence sequence;
+    // The scene's points, solid voxels and up are in the world's input frame. The voxel grid is in
+    // the frame of what was parsed: the camera's, where that was a single frame.
+    ParseResult parse;
+    Mat4 input_from_grid{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    std::vector<std::int32_t> part;  // the true part of each point, -1 for none
+};
+
+// Throws what generating and parsing throw.
+Room scan_and_parse(const RoomOptions& options);
+
+// The measures of the paper's Section 6.
+struct RoomScore {
+    std::uint64_t seed = 0;
+    std::size_t points = 0, parts = 0, objects = 0;  // the last two: true ones
+    // 6.1, Fig. 14. Regions are what growing alone finds, before any merging.
+    scenes::SegmentationScore parts_by_region, parts_by_primitive;
+    scenes::SegmentationScore objects_by_region, objects_by_primitive, objects_by_object;
+    // 6.2, Table 2, in the part of the room that lay in some frame's view: surface voxels alone,
+    // all voxels that no ray was seen to pass through, and surface with completed voxels.
+    scenes::VolumeScore surface, invisible, completed;
+    scenes::RelationScore relations;  // 6.3, Table 3
+    double gravity_deg = 0;
+    double parse_s = 0;
+};
+
+RoomScore judge(const Room& room);
+
+}  // namespace topple::evaluation

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "lab/evaluation/text.h"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace topple::evaluation {
+
+void append(std::string& text, const char* format, ...) {
+    char line[256];
+    std::va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(line, sizeof(line), format, arguments);
+    va_end(arguments);
+    text.append(line);
+}
+
+std::string percent(double share) {
+    if (std::isnan(share)) return "-";
+    char digits[32];
+    std::snprintf(digits, sizeof(digits), "%.1f", 100 * share);
+    return digits;
+}
+
+}  // namespace topple::evaluation

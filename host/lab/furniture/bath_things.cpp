@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <numbers>
+
+#include "lab/furniture/profiles.h"
+#include "lab/furniture/stacks.h"
+#include "lab/furniture/things.h"
+#include "lab/furniture/varied.h"
+
+namespace topple::scenes {
+
+Blueprint make_basin(Random& random) {
+    Blueprint b("basin");
+    const double w = random.uniform(0.4, 0.7), d = random.uniform(0.34, 0.5), h = 0.85, t = 0.03;
+    if (random.chance(0.5)) {
+        b.cylinder("column", 0, d / 2, 0, 0.18, h - 0.16);
+    } else {
+        add_cabinet(b, {0, 0, 0.15, {w, d - 0.03, h - 0.31}}, random, 0.1);
+    }
+    b.box("floor", 0, d / 2, h - 0.16, {w, d, t});
+    for (const double s : {-1.0, 1.0}) {
+        b.box("rim", s * (w - 0.05) / 2, d / 2, h - 0.13, {0.05, d, 0.13});
+        b.box("rim", 0, s < 0 ? 0.05 : d - 0.025, h - 0.13, {w - 0.1, s < 0 ? 0.1 : 0.05, 0.13});
+    }
+    b.cylinder("tap", 0, 0.05, h, 0.03, 0.12);
+    b.box("tap", 0, 0.1, h + 0.1, {0.02, 0.12, 0.02});
+    return b;
+}
+
+Blueprint make_toilet(Random& random) {
+    Blueprint b("toilet");
+    const double h = random.uniform(0.38, 0.44), r = random.uniform(0.17, 0.2);
+    b.revolved("bowl", 0, 0.42, 0, solid_within(smooth_side({0.7 * r, 0.6 * r, r, r}, h)));
+    b.box("neck", 0, 0.2, 0, {0.2, 0.26, h - 0.02});
+    b.cylinder("seat", 0, 0.42, h, 2.1 * r, 0.035);
+    if (random.chance(0.7)) {
+        b.rounded("tank", 0, 0.09, h - 0.02, {random.uniform(0.34, 0.42), 0.17, 0.36}, 0.03);
+        if (random.chance(0.4)) b.leaning("lid", 0, 0.24, h + 0.03, {1.9 * r, 0.02, 0.38}, 0.15);
+    }
+    b.box("mount", 0, 0.05, 0.1, {0.2, 0.1, 0.2});
+    return b;
+}
+
+Blueprint make_bath(Random& random) {
+    if (random.chance(0.4)) {
+        Blueprint b("shower");
+        const double w = random.uniform(0.75, 1.0);
+        b.box("tray", 0, w / 2, 0, {w, w, random.uniform(0.03, 0.12)});
+        if (random.chance(0.7)) b.box("glass", w / 2 - 0.01, w / 2, 0.1, {0.02, w, 1.85});
+        b.cylinder("column", 0, 0.03, 0.9, 0.025, 1.1);
+        b.cylinder("head", 0, 0.15, 1.95, 0.2, 0.02);
+        b.box("arm", 0, 0.08, 1.97, {0.02, 0.16, 0.02});
+        return b;
+    }
+    Blueprint b("tub");
+    const double l = random.uniform(1.4, 1.8), w = random.uniform(0.65, 0.8),
+                 h = random.uniform(0.5, 0.62), t = random.uniform(0.05, 0.1);
+    b.box("floor", 0, w / 2, 0, {l, w, 0.15});
+    for (const double s : {-1.0, 1.0}) {
+        b.box("rim", s * (l - t) / 2, w / 2, 0.15, {t, w, h - 0.15});
+        b.box("rim", 0, w / 2 + s * (w - t) / 2, 0.15, {l - 2 * t, t, h - 0.15});
+    }
+    b.cylinder("tap", 0.3 * l, 0.04, h, 0.03, 0.1);
+    return b;
+}
+
+Blueprint make_towel_rail(Random& random) {
+    Blueprint b("towel rail");
+    const double w = random.uniform(0.4, 0.7);
+    b.lying("rail", 0, 0.08, 0, w, 0.02);
+    for (const double s : {-0.45, 0.45}) b.box("mount", s * w, 0.04, 0, {0.02, 0.08, 0.02});
+    const double cloth = w * random.uniform(0.4, 0.8), drop = random.uniform(0.3, 0.7);
+    b.box("towel", 0, 0.095, 0.02 - drop, {cloth, 0.008, drop});
+    b.box("towel", 0, 0.065, 0.02 - 0.8 * drop, {cloth, 0.008, 0.8 * drop});
+    return b;
+}
+
+Stack make_bath_item(Random& random, double clearance) {
+    return any_that_fits(clearance, [&] {
+        Stack stack;
+        switch (random.integer(0, 4)) {
+            case 0: {
+                Blueprint b("bottle");
+                const double w = random.uniform(0.04, 0.08), h = random.uniform(0.12, 0.24);
+                b.feet = {b.rounded("body", 0, 0, 0, {w, 0.7 * w, h}, 0.012)};
+                b.cylinder("cap", 0, 0, h, 0.5 * w, 0.03);
+                stack = {b};
+                break;
+            }
+            case 1: {
+                for (int k = random.integer(1, 4); k > 0; --k) {
+                    Blueprint b("towel");
+                    b.feet = {b.rounded("towel", 0, 0, 0,
+                                        {random.uniform(0.24, 0.3), random.uniform(0.18, 0.24),
+                                         random.uniform(0.03, 0.06)},
+                                        0.012)};
+                    stack.push_back(b);
+                }
+                break;
+            }
+            case 2: {
+                Blueprint b("roll");
+                b.feet = {b.cylinder("roll", 0, 0, 0, 0.11, 0.1)};
+                stack = {b};
+                break;
+            }
+            default:
+                stack = make_turned_item(random, clearance);
+        }
+        return stack;
+    });
+}
+
+Stack make_turned_item(Random& random, double clearance) {
+    for (int attempt = 0; attempt < 6; ++attempt) {
+        const Group group = make_varied_item(random, clearance, 0.35);
+        if (group.size() == 1) return {group.front().blueprint};
+        Stack stack = make_item(random, clearance, 0.35);
+        if (stack.size() == 1) return stack;
+    }
+    return {};
+}
+
+}  // namespace topple::scenes

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "lab/furniture/blueprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace topple::scenes {
+namespace {
+
+int put(Blueprint& blueprint, Part part) {
+    blueprint.parts.push_back(std::move(part));
+    return static_cast<int>(blueprint.parts.size()) - 1;
+}
+
+}  // namespace
+
+int Blueprint::box(const char* part, double x, double y, double bottom, const Vec3& size,
+                   double yaw) {
+    return put(*this, {Shape::box, {x, y, bottom + size[2] / 2}, size, yaw, 0, -1, part});
+}
+
+int Blueprint::cylinder(const char* part, double x, double y, double bottom, double diameter,
+                        double height) {
+    return put(*this, {Shape::cylinder,
+                       {x, y, bottom + height / 2},
+                       {diameter, diameter, height},
+                       0,
+                       0,
+                       -1,
+                       part});
+}
+
+int Blueprint::lying(const char* part, double x, double y, double bottom, double length,
+                     double diameter, double yaw) {
+    return put(*this, {Shape::lying_cylinder,
+                       {x, y, bottom + diameter / 2},
+                       {length, diameter, diameter},
+                       yaw,
+                       0,
+                       -1,
+                       part});
+}
+
+int Blueprint::sphere(const char* part, double x, double y, double bottom, double diameter) {
+    return put(*this, {Shape::sphere,
+                       {x, y, bottom + diameter / 2},
+                       {diameter, diameter, diameter},
+                       0,
+                       0,
+                       -1,
+                       part});
+}
+
+int Blueprint::cone(const char* part, double x, double y, double bottom, double diameter,
+                    double height, double top_ratio) {
+    return put(*this, {Shape::cone,
+                       {x, y, bottom + height / 2},
+                       {diameter, diameter, height},
+                       0,
+                       top_ratio,
+                       -1,
+                       part});
+}
+
+int Blueprint::rounded(const char* part, double x, double y, double bottom, const Vec3& size,
+                       double rounding) {
+    Part p{Shape::rounded_box, {x, y, bottom + size[2] / 2}, size, 0, 0, -1, part};
+    p.rounding = rounding;
+    return put(*this, std::move(p));
+}
+
+int Blueprint::revolved(const char* part, double x, double y, double bottom,
+                        solids::Profile profile) {
+    double radius = 0, low = profile.front()[1], high = low;
+    for (const auto& [r, z] : profile) {
+        radius = std::max(radius, r);
+        low = std::min(low, z);
+        high = std::max(high, z);
+    }
+    for (auto& point : profile) point[1] -= (low + high) / 2;
+    const Vec3 center{x, y, bottom + (low + high) / 2};
+    Part p{Shape::revolved, center, {2 * radius, 2 * radius, high - low}, 0, 0, -1, part};
+    p.profile = std::move(profile);
+    return put(*this, std::move(p));
+}
+
+int Blueprint::leaning(const char* part, double x, double y, double bottom, const Vec3& size,
+                       double lean, double yaw) {
+    const double s = std::sin(lean), c = std::cos(lean);
+    // From the lowest edge, which is on the side that it leans to, to the middle.
+    const double back = (std::copysign(size[1], lean) * c - size[2] * s) / 2;
+    const double up = (size[1] * std::abs(s) + size[2] * c) / 2;
+    Part p{Shape::box, {x - std::sin(yaw) * back, y + std::cos(yaw) * back, bottom + up},
+           size,       yaw,
+           0,          -1,
+           part};
+    p.lean = lean;
+    return put(*this, std::move(p));
+}
+
+int Blueprint::bar(const char* part, const Vec3& from, const Vec3& to, double diameter) {
+    const Vec3 way{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    const double length = std::hypot(way[0], way[1], way[2]);
+    Part p{Shape::cylinder,
+           {(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2},
+           {diameter, diameter, length},
+           std::atan2(way[0], -way[1]),
+           0,
+           -1,
+           part};
+    p.lean = std::acos(way[2] / length);
+    return put(*this, std::move(p));
+}
+
+int Blueprint::leg(const char* part, double x, double y, double bottom, double top, double diameter,
+                   double lean, double heading) {
+    // The rims of the slanted ends reach further than the axis does.
+    const double rim = diameter / 2 * std::sin(lean);
+    const double spread = (top - bottom - 2 * rim) * std::tan(lean);
+    return bar(part, {x + spread * std::cos(heading), y + spread * std::sin(heading), bottom + rim},
+               {x, y, top - rim}, diameter);
+}
+
+void Blueprint::rungs(int left, int right, int count, double diameter) {
+    const Part a = parts[static_cast<std::size_t>(left)],
+               b = parts[static_cast<std::size_t>(right)];
+    const double length = b.center[0] - a.center[0] - a.size[0];
+    for (int k = 1; k <= count; ++k) {
+        const double up = a.size[2] * (static_cast<double>(k) / (count + 1) - 0.5);
+        const int rung =
+            lying("rung", (a.center[0] + b.center[0]) / 2, a.center[1] - up * std::sin(a.lean),
+                  a.center[2] + up * std::cos(a.lean) - diameter / 2, length, diameter);
+        join(left, rung);
+        join(right, rung);
+    }
+}
+
+void Blueprint::arm(int base, const Vec3& from, const std::vector<Segment>& segments,
+                    double thickness, double shade) {
+    const double ball = 0.8 * thickness;  // radius
+    const auto beyond = [](const Vec3& p, const Vec3& way, double distance) {
+        return Vec3{p[0] + distance * way[0], p[1] + distance * way[1], p[2] + distance * way[2]};
+    };
+    Vec3 at{from[0], from[1], from[2] + ball}, across{};
+    int last = sphere("joint", at[0], at[1], at[2] - ball, 2 * ball);
+    join(base, last);
+    for (const Segment& segment : segments) {
+        const Vec3 way{0, std::sin(segment.lean), std::cos(segment.lean)};
+        const Vec3 end = beyond(at, way, segment.length);
+        const int rod = bar("arm", beyond(at, way, ball), beyond(end, way, -ball), thickness);
+        const int joint = sphere("joint", end[0], end[1], end[2] - ball, 2 * ball);
+        join(last, rod);
+        join(rod, joint);
+        last = joint;
+        at = end;
+        across = {0, way[2], -way[1]};
+    }
+    // The shade points across the last bar, its narrow end at the ball.
+    const double height = 0.8 * shade;
+    const int lamp =
+        bar("shade", beyond(at, across, ball + height), beyond(at, across, ball), shade);
+    Part& part = parts[static_cast<std::size_t>(lamp)];
+    part.shape = Shape::cone;
+    part.top_ratio = 0.4;
+    join(last, lamp);
+}
+
+void Blueprint::stand_on(int part, double clearance, const char* where, double rim) {
+    const Part& p = parts[static_cast<std::size_t>(part)];
+    // The square inside a disc.
+    const bool square = p.shape == Shape::box || p.shape == Shape::rounded_box;
+    const double share = square ? 0.5 : 0.5 * 0.7071;
+    surfaces.push_back({part, p.center[0], p.center[1], share * p.size[0] - rim,
+                        share * p.size[1] - rim, clearance, where});
+}
+
+std::array<Vec3, 2> Blueprint::bounds() const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::array<Vec3, 2> all{Vec3{infinity, infinity, infinity},
+                            Vec3{-infinity, -infinity, -infinity}};
+    for (const Part& part : parts) {
+        const auto one = part.bounds();
+        for (std::size_t k = 0; k < 3; ++k) {
+            all[0][k] = std::min(all[0][k], one[0][k]);
+            all[1][k] = std::max(all[1][k], one[1][k]);
+        }
+    }
+    return all;
+}
+
+}  // namespace topple::scenes

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lab/furniture/profiles.h"
+#include "lab/furniture/varied.h"
+
+namespace topple::scenes {
+namespace {
+
+using std::numbers::pi;
+
+Blueprint turned(const char* name, const solids::Profile& profile) {
+    Blueprint b(name);
+    b.feet = {b.revolved(name, 0, 0, 0, profile)};
+    return b;
+}
+
+Blueprint glass_bottle(Random& random) {
+    const double r = random.uniform(0.033, 0.05), neck = random.uniform(0.3, 0.45) * r;
+    const double body = random.uniform(0.13, 0.19), shoulder = random.uniform(0.03, 0.07),
+                 top = random.uniform(0.04, 0.08);
+    Side side = joined({{r, 0}, {r, body}}, quarter(r, body, neck - r, shoulder, false));
+    side.push_back({neck, body + shoulder + top});
+    return turned("glass bottle", solid_within(side));
+}
+
+Blueprint bowl(Random& random) {
+    const double foot = random.uniform(0.03, 0.05), r = random.uniform(0.08, 0.15);
+    const double h = random.uniform(0.05, 0.1);
+    return turned("bowl", vessel_within(joined({{foot, 0}}, quarter(foot, 0, r - foot, h, true)),
+                                        random.uniform(0.006, 0.009), 0.01));
+}
+
+Blueprint mug(Random& random) {
+    const double r = random.uniform(0.036, 0.05), h = random.uniform(0.08, 0.12);
+    return turned("mug", vessel_within({{0.9 * r, 0}, {r, h}}, 0.006, 0.008));
+}
+
+Blueprint plate(Random& random) {
+    const double r = random.uniform(0.1, 0.15), h = random.uniform(0.018, 0.03);
+    return turned("plate", vessel_within({{0.6 * r, 0}, {r, h}}, 0.02, 0.008));
+}
+
+Blueprint amphora(Random& random) {
+    const double r = random.uniform(0.05, 0.08), h = random.uniform(0.2, 0.34);
+    return turned("amphora", vessel_within(smooth_side({0.6 * r, r, random.uniform(0.9, 1.2) * r,
+                                                        random.uniform(0.35, 0.6) * r, 0.7 * r},
+                                                       h),
+                                           0.008, 0.015));
+}
+
+// Any shape that a lathe can make.
+Blueprint figurine(Random& random) {
+    std::vector<double> radii{random.uniform(0.035, 0.055)};
+    for (int k = random.integer(3, 5); k > 0; --k) radii.push_back(random.uniform(0.015, 0.055));
+    return turned("figurine", solid_within(smooth_side(radii, random.uniform(0.14, 0.3))));
+}
+
+Blueprint wine_glass(Random& random) {
+    Blueprint b("goblet");
+    const double r = random.uniform(0.035, 0.05), stem = random.uniform(0.06, 0.1);
+    const int foot =
+        b.revolved("foot", 0, 0, 0, solid_within({{r, 0}, {r, 0.006}, {0.3 * r, 0.015}}));
+    const int bar = b.cylinder("stem", 0, 0, 0.015, 0.014, stem);
+    const int cup = b.revolved(
+        "bowl", 0, 0, 0.015 + stem,
+        vessel_within(
+            joined({{0.3 * r, 0}}, quarter(0.3 * r, 0, 0.8 * r, random.uniform(0.06, 0.1), true)),
+            0.005, 0.01));
+    b.join(foot, bar);
+    b.join(bar, cup);
+    b.feet = {foot};
+    return b;
+}
+
+// Its screen leans back by more than a right angle to the keys.
+Blueprint open_laptop(Random& random) {
+    Blueprint b("open laptop");
+    const double w = random.uniform(0.3, 0.38), d = random.uniform(0.21, 0.26), t = 0.02;
+    const int keys = b.box("keyboard", 0, 0, 0, {w, d, t});
+    const int screen =
+        b.leaning("screen", 0, -d / 2 + 0.012, t, {w, 0.012, d}, random.uniform(0.1, 0.6));
+    b.join(keys, screen);
+    b.feet = {keys};
+    return b;
+}
+
+// A leaning panel and the prop behind it, whose upper edge touches its back.
+Blueprint photo_frame(Random& random) {
+    Blueprint b("photo frame");
+    const double w = random.uniform(0.14, 0.26), h = random.uniform(0.16, 0.28), t = 0.018;
+    const double lean = random.uniform(0.15, 0.3), prop = random.uniform(0.3, 0.5);
+    const int panel = b.leaning("panel", 0, 0, 0, {w, t, h}, lean);
+    const double length = 0.55 * h;
+    const double y = -length * (std::sin(prop) + std::cos(prop) * std::tan(lean));
+    const int strut = b.leaning("prop", 0, y, 0, {0.05, 0.012, length}, -prop);
+    b.join(panel, strut);
+    b.feet = {panel, strut};
+    return b;
+}
+
+Blueprint arm_lamp(Random& random) {
+    Blueprint b("arm lamp");
+    const double r = 0.1, t = 0.04;
+    const int base =
+        b.revolved("base", 0, 0, 0, solid_within(joined({{r, 0}}, quarter(r, 0, -0.06, t, false))));
+    b.feet = {base};
+    b.arm(base, {0, 0, t},
+          {{random.uniform(0.16, 0.26), random.uniform(-0.5, -0.1)},
+           {random.uniform(0.12, 0.22), random.uniform(0.4, 0.9)}},
+          0.022, random.uniform(0.1, 0.13));
+    return b;
+}
+
+// The panel's back leans against the upper front edge of the neck.
+Blueprint tilted_monitor(Random& random) {
+    Blueprint b("tilted monitor");
+    const double w = random.uniform(0.45, 0.62), h = 0.6 * w, lean = random.uniform(0.08, 0.3);
+    const double low = random.uniform(0.06, 0.12), top = low + 0.55 * h, neck = 0.04;
+    const int base = b.rounded("base", 0, 0, 0, {random.uniform(0.2, 0.28), 0.19, 0.024}, 0.008);
+    const int stem = b.box("neck", 0, -0.04, 0.024, {0.08, neck, top - 0.024});
+    const double edge = -0.04 + neck / 2;
+    const int panel =
+        b.leaning("panel", 0, edge + (top - low) * std::tan(lean), low, {w, 0.035, h}, lean);
+    b.join(base, stem);
+    b.join(stem, panel);
+    b.feet = {base};
+    return b;
+}
+
+Blueprint rounded_device(Random& random) {
+    Blueprint b(random.chance(0.5) ? "toaster" : "speaker");
+    const Vec3 size{random.uniform(0.12, 0.3), random.uniform(0.12, 0.2),
+                    random.uniform(0.14, 0.26)};
+    b.feet = {b.rounded("body", 0, 0, 0, size, random.uniform(0.015, 0.05))};
+    return b;
+}
+
+Blueprint toy_truck(Random& random) {
+    Blueprint b("toy truck");
+    const double w = random.uniform(0.08, 0.12), l = random.uniform(0.2, 0.3), wheel = 0.06;
+    const int chassis = b.box("chassis", 0, 0, 0.02, {w, l, 0.045});
+    const int cab = b.rounded("cab", 0, 0.3 * l, 0.065, {w - 0.01, 0.35 * l, 0.08}, 0.015);
+    b.join(chassis, cab);
+    for (const double sx : {-1.0, 1.0}) {
+        for (const double sy : {-1.0, 1.0}) {
+            const int round =
+                b.lying("wheel", sx * (w / 2 + 0.0125), sy * 0.3 * l, 0, 0.025, wheel);
+            b.join(chassis, round);
+            b.feet.push_back(round);
+        }
+    }
+    return b;
+}
+
+// Upright books side by side with hardly any air between them.
+Group book_row(Random& random) {
+    Group row;
+    const int count = random.integer(3, 7);
+    double x = 0;
+    for (int k = 0; k < count; ++k) {
+        Blueprint b("upright book");
+        const double t = random.uniform(0.02, 0.05), d = random.uniform(0.13, 0.19);
+        b.feet = {b.box("book", 0, 0, 0, {t, d, random.uniform(0.18, 0.27)})};
+        row.push_back({std::move(b), {x + t / 2, random.uniform(-0.02, 0.02), 0, 0}});
+        x += t + random.uniform(0.001, 0.004);
+    }
+    for (Member& m : row) m.pose.x -= x / 2;
+    return row;
+}
+
+Group any_varied_item(Random& random) {
+    const auto one = [](Blueprint b) { return Group{{std::move(b), {}}}; };
+    switch (random.integer(0, 19)) {
+        case 0:
+        case 1:
+            return one(glass_bottle(random));
+        case 2:
+        case 3:
+            return one(bowl(random));
+        case 4:
+            return one(mug(random));
+        case 5:
+            return one(plate(random));
+        case 6:
+            return one(amphora(random));
+        case 7:
+            return one(figurine(random));
+        case 8:
+            return one(wine_glass(random));
+        case 9:
+            return one(open_laptop(random));
+        case 10:
+            return one(photo_frame(random));
+        case 11:
+            return one(arm_lamp(random));
+        case 12:
+            return one(tilted_monitor(random));
+        case 13:
+            return one(rounded_device(random));
+        case 14:
+            return one(toy_truck(random));
+        case 15:
+            return one(make_leafy_plant(random, 0.5));
+        case 16:
+            return book_row(random);
+        case 17:
+            return make_pile(random, {0.26, 0.19, 0.05}, random.integer(3, 6));  // books
+        case 18:
+            return make_pile(random, {0.2, 0.17, 0.12}, random.integer(2, 3));  // boxes
+        default: {
+            Group group;
+            for (Blueprint& b : make_item(random, 1, 1)) {
+                const int on = static_cast<int>(group.size()) - 1;
+                const Pose pose{0, 0, height(group), random.uniform(-0.08, 0.08)};
+                group.push_back({std::move(b), pose, on});
+            }
+            return group;
+        }
+    }
+}
+
+}  // namespace
+
+double height(const Group& group) {
+    double top = 0;
+    for (const Member& m : group) top = std::max(top, m.pose.z + m.blueprint.height());
+    return top;
+}
+
+std::array<double, 2> reach(const Group& group, double yaw) {
+    std::array<double, 2> most{};
+    for (const Member& m : group) {
+        if (m.on >= 0) continue;
+        for (const int foot : m.blueprint.feet) {
+            const Part& part = m.blueprint.parts[static_cast<std::size_t>(foot)];
+            const auto box = moved({0, 0, 0, yaw}, moved(m.pose, part)).bounds();
+            for (std::size_t a = 0; a < 2; ++a)
+                most[a] = std::max({most[a], -box[0][a], box[1][a]});
+        }
+    }
+    return most;
+}
+
+Group make_varied_item(Random& random, double most_height, double radius) {
+    for (int attempt = 0; attempt < 40; ++attempt) {
+        Group group = any_varied_item(random);
+        const auto far = reach(group, 0);
+        if (!group.empty() && height(group) <= most_height && std::hypot(far[0], far[1]) <= radius)
+            return group;
+    }
+    return {};
+}
+
+Group make_pillow(Random& random) {
+    Blueprint b("pillow");
+    const double t = random.uniform(0.1, 0.16);
+    b.feet = {b.rounded("pillow", 0, 0, 0, {random.uniform(0.4, 0.6), random.uniform(0.3, 0.38), t},
+                        0.48 * t)};
+    return {{std::move(b), {}}};
+}
+
+Group make_pile(Random& random, const Vec3& lowest_size, int count) {
+    Group pile;
+    Vec3 size = lowest_size;
+    double z = 0;
+    for (int k = 0; k < count; ++k) {
+        Blueprint b("piled box");
+        const Vec3 one{size[0] * random.uniform(0.8, 1.1), size[1] * random.uniform(0.8, 1.1),
+                       size[2] * random.uniform(0.6, 1.3)};
+        b.feet = {b.box("box", 0, 0, 0, one)};
+        // All that is above a box has its center within a tenth of the sizes from the pile's axis.
+        const Pose pose{k == 0 ? 0 : random.uniform(-0.1, 0.1) * size[0],
+                        k == 0 ? 0 : random.uniform(-0.1, 0.1) * size[1], z,
+                        k == 0 ? 0 : random.uniform(-0.6, 0.6)};
+        pile.push_back({std::move(b), pose, k - 1});
+        z += one[2];
+        for (std::size_t a = 0; a < 2; ++a) size[a] *= random.uniform(0.85, 1.0);
+    }
+    return pile;
+}
+
+}  // namespace topple::scenes

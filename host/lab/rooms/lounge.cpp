@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <utility>
+
+#include "lab/furniture/things.h"
+#include "lab/furniture/varied.h"
+#include "lab/rooms/composer.h"
+#include "lab/rooms/goods.h"
+#include "lab/rooms/plans.h"
+
+namespace topple::scenes {
+
+World make_lounge(std::uint64_t seed) {
+    Composer room(seed, 213);
+    Random& random = room.random();
+    Composer::Shell shell;
+    shell.size = {random.uniform(3.2, 9), random.uniform(3, 7), random.uniform(2.4, 3.4)};
+    room.build(shell);
+    const Vec3& size = room.world().room;
+    if (random.chance(0.5))
+        room.add_building_box("carpet", size[0] * random.uniform(0.35, 0.65),
+                              size[1] * random.uniform(0.35, 0.65), -0.0001,
+                              {random.uniform(0.2, 0.6) * size[0],
+                               random.uniform(0.2, 0.6) * size[1], random.uniform(0.004, 0.014)});
+    for (int k = random.integer(0, 2); k > 0; --k)
+        room.on_wall(make_wall_curtain(random, random.uniform(0.4, 2.2),
+                                       std::min(size[2] - 0.05, random.uniform(2.0, 2.6))),
+                     0);
+    if (random.chance(0.5)) room.along_wall(make_corner_sofa(random));
+    if (random.chance(0.6)) {  // side by side
+        const Blueprint like = make_couch(random);
+        const bool equal = random.chance(0.6);
+        const double from = random.uniform(0.05, 1);
+        room.row(room.any_wall(), from, from + random.uniform(2, 5), 0.5,
+                 [&] { return equal ? like : make_couch(random); });
+    }
+    const std::size_t seats = room.placed().size();
+    for (int k = random.integer(0, 4); k > 0; --k) {
+        switch (random.integer(0, 3)) {
+            case 0:
+                room.anywhere(make_bolster_armchair(random));
+                break;
+            case 1:
+                room.anywhere(make_ottoman(random));
+                break;
+            case 2:
+                room.anywhere(make_corner_sofa(random));
+                break;
+            default:
+                room.anywhere(make_couch(random));
+        }
+    }
+    for (std::size_t k = 0; k < seats; ++k) {  // low tables before them
+        if (!random.chance(0.4)) continue;
+        room.before(k, 0, random.chance(0.5) ? make_ottoman(random) : make_drum_table(random));
+    }
+    for (int k = random.integer(0, 3); k > 0; --k)
+        room.anywhere(random.chance(0.5) ? make_drum_table(random) : make_pedestal_table(random));
+    if (random.chance(0.6) && room.along_wall(make_tv_board(random))) {
+        const std::size_t board = room.placed().size() - 1;
+        room.on_surface(board, room.placed()[board].blueprint.surfaces.back(),
+                        {make_television(random)});
+    }
+    if (random.chance(0.3)) {
+        if (room.along_wall(random.chance(0.5) ? make_soft_bed(random) : make_double_bed(random)))
+            room.along_wall(make_drawer_unit(random));
+    }
+    for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_bookcase(random, 2.2));
+    for (int k = random.integer(0, 3); k > 0; --k)
+        room.along_wall(make_bush(random, random.uniform(0.6, 1.6)));
+    for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_lamp_on_pole(random));
+    const double clutter = random.uniform(1, 9);
+    const std::size_t count = room.placed().size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const bool soft = room.placed()[k].blueprint.name == "sofa";
+        room.fill(k, soft ? 2.5 : clutter, [&](double c) {
+            return soft ? make_soft_item(random, c) : make_home_item(random, c);
+        });
+    }
+    leave_on_floor(room, random.integer(0, 5));
+    return std::move(room.world());
+}
+
+}  // namespace topple::scenes

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+#include "lab/scan/depth_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/thread_pool.h"
+#include "core/vectors.h"
+#include "lab/random.h"
+#include "lab/rooms/furnished_room.h"
+#include "topple/error.h"
+
+namespace topple::scenes {
+namespace {
+
+using std::numbers::pi;
+constexpr double no_hit = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t tile = 16;  // pixels, for culling
+
+Vec3 unit(const Vec3& v) {
+    const double length = std::hypot(v[0], v[1], v[2]);
+    return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+struct Ray {
+    Vec3 direction;  // unit, room frame
+    double z_share;  // its component along the camera's axis
+};
+
+struct Candidate {
+    double from;  // no point of the part is nearer than this
+    std::int16_t part;
+};
+
+// Casts the rays of one image.
+class Caster {
+  public:
+    Caster(const World& world, const Intrinsics& k, const Mat4& pose)
+        : world_(world), k_(k), pose_(pose), eye_{pose[3], pose[7], pose[11]} {
+        for (const Part& part : world.parts) headings_.push_back(part.heading());
+    }
+
+    Ray ray(double u, double v) const {
+        const Vec3 c{(u - k_.cx) / k_.fx, (v - k_.cy) / k_.fy, 1};
+        const Vec3 d = unit(c);
+        return {{pose_[0] * d[0] + pose_[1] * d[1] + pose_[2] * d[2],
+                 pose_[4] * d[0] + pose_[5] * d[1] + pose_[6] * d[2],
+                 pose_[8] * d[0] + pose_[9] * d[1] + pose_[10] * d[2]},
+                d[2]};
+    }
+
+    // The parts whose bounding spheres meet the cone around a tile (with two pixels' room for the
+    // jitter), nearest first.
+    void candidates(std::uint32_t u0, std::uint32_t v0, std::vector<Candidate>& list) const {
+        const Vec3 axis = ray(u0 + tile / 2.0, v0 + tile / 2.0).direction;
+        double cosine = 1;
+        for (const double u : {u0 - 2.0, u0 + tile + 2.0}) {
+            for (const double v : {v0 - 2.0, v0 + tile + 2.0}) {
+                cosine = std::min(cosine, dot(axis, ray(u, v).direction));
+            }
+        }
+        const double half = std::acos(std::clamp(cosine, -1.0, 1.0));
+        list.clear();
+        for (std::size_t n = 0; n < world_.parts.size(); ++n) {
+            const Part& part = world_.parts[n];
+            const Vec3 to{part.center[0] - eye_[0], part.center[1] - eye_[1],
+                          part.center[2] - eye_[2]};
+            const double distance = std::sqrt(dot(to, to)), radius = part.bounding_radius();
+            if (distance > radius) {
+                const double angle = std::acos(std::clamp(dot(axis, to) / distance, -1.0, 1.0));
+                if (angle > half + std::asin(radius / distance)) continue;
+            }
+            list.push_back({std::max(0.0, distance - radius), static_cast<std::int16_t>(n)});
+        }
+        std::sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
+            return a.from != b.from ? a.from < b.from : a.part < b.part;
+        });
+    }
+
+    double cast(const Ray& ray, const std::vector<Candidate>& list, std::int16_t& part) const {
+        double best = no_hit;
+        part = -1;
+        for (const Candidate& c : list) {
+            if (c.from > best) break;
+            const auto n = static_cast<std::size_t>(c.part);
+            const double t = world_.parts[n].hit(eye_, ray.direction, headings_[n]);
+            if (t < best || (t == best && t < no_hit && c.part < part)) {
+                best = t;
+                part = c.part;
+            }
+        }
+        return best;
+    }
+
+    // Cosine between the ray and the surface's normal where it hit.
+    double incidence(const Ray& ray, double t, std::int16_t part) const {
+        const Vec3 p{eye_[0] + t * ray.direction[0], eye_[1] + t * ray.direction[1],
+                     eye_[2] + t * ray.direction[2]};
+        return std::abs(dot(world_.parts[static_cast<std::size_t>(part)].normal(p), ray.direction));
+    }
+
+  private:
+    const World& world_;
+    const Intrinsics& k_;
+    const Mat4& pose_;
+    Vec3 eye_;
+    std::vector<Part::Heading> headings_;
+};
+
+double noisy(double z, double cosine, const CameraOptions& o, Random& random) {
+    const double angle = std::acos(std::clamp(cosine, 0.0, 1.0));
+    if (angle > o.grazing_deg * pi / 180) return 0;
+    double sigma = o.axial_m + o.growth * (z - 0.4) * (z - 0.4);
+    const double flat = angle / (pi / 2 - angle);
+    sigma += 0.0001 * flat * flat / std::sqrt(z);
+    z += sigma * random.normal();
+    if (o.disparity_steps) {
+        const double constant = o.intrinsics.fx * 0.075 * 8;  // eighths of a pixel at 1 m
+        z = constant / std::round(constant / z);
+    }
+    return z;
+}
+
+// A sensor mixes or loses the readings on both sides of a jump in depth.
+void drop_edges(const Intrinsics& k, const std::vector<double>& z,
+                std::vector<std::uint16_t>& depth) {
+    const auto w = static_cast<std::int64_t>(k.width), h = static_cast<std::int64_t>(k.height);
+    for (std::int64_t v = 0; v < h; ++v) {
+        for (std::int64_t u = 0; u < w; ++u) {
+            const double here = z[static_cast<std::size_t>(v * w + u)];
+            const double limit = std::max(0.04, 0.06 * here);
+            for (const auto& [du, dv] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+                const std::int64_t a = u + du, b = v + dv;
+                if (a < 0 || b < 0 || a >= w || b >= h) continue;
+                if (!(std::abs(z[static_cast<std::size_t>(b * w + a)] - here) < limit)) {
+                    depth[static_cast<std::size_t>(v * w + u)] = 0;
+                }
+            }
+        }
+    }
+}
+
+void check(const CameraOptions& o) {
+    const Intrinsics& k = o.intrinsics;
+    const bool usable = k.width > 0 && k.height > 0 && k.width <= 8192 && k.height <= 8192 &&
+                        k.fx > 0 && k.fy > 0 && k.depth_scale > 0 && o.frames > 0 &&
+                        o.frames <= 9999 && o.fuse_m > 1e-4 && o.min_range_m > 0 &&
+                        o.max_range_m > o.min_range_m;
+    if (!usable) {
+        throw Error(ErrorKind::usage,
+                    "camera: needs 1 to 8192 pixels a side, positive focal lengths, 1 to 9999 "
+                    "frames, a range above 0 and cells above 0.1 mm");
+    }
+}
+
+// Eye and target of frame n: an ellipse inside the free middle, two rounds, looking outwards in one
+// frame and across the room in the next, up and down between knee and eye height.
+Mat4 walking_pose(const World& world, const CameraOptions& o, unsigned n, Random& random) {
+    const auto middle = free_middle(world);
+    const double angle = 4 * pi * n / o.frames;
+    const Vec3 eye{world.room[0] / 2 + 0.95 * middle[0] * std::cos(angle),
+                   world.room[1] / 2 + 0.95 * middle[1] * std::sin(angle),
+                   1.35 + 0.35 * std::sin(2.5 * angle)};
+    const double heading = angle + (n % 2 ? pi : 0) + random.uniform(-0.5, 0.5);
+    const double pitch = random.uniform(-0.75, -0.12);
+    return look_at(eye, {eye[0] + std::cos(heading), eye[1] + std::sin(heading), eye[2] + pitch});
+}
+
+// A place in the free middle that has the most things that stand on others in its view.
+Mat4 single_pose(const World& world) {
+    Mat4 best{};
+    double most = -1;
+    for (int n = 0; n < 16; ++n) {
+        const double angle = 2 * pi * n / 16;
+        const auto middle = free_middle(world);
+        const Vec3 eye{world.room[0] / 2 - 0.9 * middle[0] * std::cos(angle),
+                       world.room[1] / 2 - 0.9 * middle[1] * std::sin(angle), 1.5};
+        const Mat4 pose =
+            look_at(eye, {eye[0] + std::cos(angle), eye[1] + std::sin(angle), eye[2] - 0.45});
+        double seen = 0;
+        for (const auto& [supporter, part] : world.support) {
+            const Vec3& c = world.parts[static_cast<std::size_t>(part)].center;
+            const Vec3 to = unit({c[0] - eye[0], c[1] - eye[1], c[2] - eye[2]});
+            if (to[0] * pose[2] + to[1] * pose[6] + to[2] * pose[10] > 0.88)
+                seen += supporter == 0 ? 1 : 2;
+        }
+        if (seen > most) {
+            most = seen;
+            best = pose;
+        }
+    }
+    return best;
+}
+
+Mat4 to_input(const World& world, const Mat4& pose) {
+    Mat4 out{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+    for (std::size_t column = 0; column < 4; ++column) {
+        const Vec3 v = world.to_input({pose[column], pose[4 + column], pose[8 + column]});
+        for (std::size_t row = 0; row < 3; ++row) out[4 * row + column] = v[row];
+    }
+    return out;
+}
+
+}  // namespace
+
+Mat4 look_at(const Vec3& eye, const Vec3& target) {
+    const Vec3 forward = unit({target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]});
+    const Vec3 right = unit(cross(forward, {0, 0, 1}));
+    const Vec3 down = cross(forward, right);
+    return {right[0], down[0], forward[0], eye[0], right[1], down[1], forward[1], eye[1],
+            right[2], down[2], forward[2], eye[2], 0,        0,       0,          1};
+}
+
+std::vector<std::int16_t> render(const World& world, const CameraOptions& options,
+                                 const Mat4& camera_to_room, std::uint64_t frame_number,
+                                 std::vector<std::uint16_t>& depth) {
+    const Intrinsics& k = options.intrinsics;
+    const Caster caster(world, k, camera_to_room);
+    const std::size_t pixels = std::size_t{k.width} * k.height;
+    std::vector<double> exact(pixels, no_hit);
+    std::vector<std::int16_t> part(pixels, -1);
+    depth.assign(pixels, 0);
+    std::vector<Candidate> list;
+    for (std::uint32_t v0 = 0; v0 < k.height; v0 += tile) {
+        for (std::uint32_t u0 = 0; u0 < k.width; u0 += tile) {
+            caster.candidates(u0, v0, list);
+            for (std::uint32_t v = v0; v < std::min(v0 + tile, k.height); ++v) {
+                for (std::uint32_t u = u0; u < std::min(u0 + tile, k.width); ++u) {
+                    const std::size_t at = std::size_t{v} * k.width + u;
+                    Random random(options.seed, frame_number * pixels + at);
+                    double du = 0, dv = 0;
+                    if (options.noise) {
+                        du = std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
+                        dv = std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
+                    }
+                    const Ray ray = caster.ray(u + du, v + dv);
+                    const double t = caster.cast(ray, list, part[at]);
+                    if (part[at] < 0) continue;
+                    double z = t * ray.z_share;
+                    exact[at] = z;
+                    if (options.noise)
+                        z = noisy(z, caster.incidence(ray, t, part[at]), options, random);
+                    const double stored = std::round(z * k.depth_scale);
+                    if (z >= options.min_range_m && z <= options.max_range_m && stored < 65535.5) {
+                        depth[at] = static_cast<std::uint16_t>(stored);
+                    }
+                }
+            }
+        }
+    }
+    if (options.noise) drop_edges(k, exact, depth);
+    for (std::size_t at = 0; at < pixels; ++at) {
+        if (depth[at] == 0) part[at] = -1;
+    }
+    return part;
+}
+
+Sequence film(const World& world, const CameraOptions& options, std::span<const Mat4> poses) {
+    check(options);
+    if (world.parts.size() > 32767) {
+        throw Error(ErrorKind::usage, "camera: the scene has more than 32767 parts");
+    }
+    const auto count = static_cast<unsigned>(poses.size());
+    Sequence sequence;
+    sequence.intrinsics = options.intrinsics;
+    sequence.frames.resize(count);
+    sequence.part.resize(count);
+    ThreadPool(options.threads).each(count, 1, [&](std::size_t n) {
+        const auto number = static_cast<unsigned>(n);
+        sequence.part[n] = render(world, options, poses[n], number + 1, sequence.frames[n].depth);
+        sequence.frames[n].camera_to_world = to_input(world, poses[n]);
+    });
+    fuse(options, sequence);
+    return sequence;
+}
+
+Sequence walk(const World& world, const CameraOptions& options) {
+    check(options);
+    Random random(options.seed, 1);
+    std::vector<Mat4> poses;
+    for (unsigned n = 0; n < (options.single ? 1 : options.frames); ++n) {
+        poses.push_back(options.single ? single_pose(world)
+                                       : walking_pose(world, options, n, random));
+    }
+    return film(world, options, poses);
+}
+
+}  // namespace topple::scenes

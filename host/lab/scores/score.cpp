@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "lab/scores/score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "lab/parallel.h"
+#include "lab/solids/measure.h"
+#include "topple/error.h"
+
+namespace topple::scenes {
+namespace {
+
+constexpr double nearest_m = 0.05;
+constexpr double cut_cell_m = 0.02;
+
+void check(const Scene& parse) {
+    const ScenePoints& points = parse.points;
+    const std::size_t n = points.x.size();
+    if (n == 0 || points.primitive.size() != n || points.object.size() != n ||
+        !(parse.voxel_size_m > 0)) {
+        throw Error(ErrorKind::input,
+                    "score: the parse has " + std::to_string(n) + " points, labels of " +
+                        std::to_string(points.primitive.size()) + " and voxels of " +
+                        std::to_string(parse.voxel_size_m) + " m");
+    }
+}
+
+}  // namespace
+
+std::vector<std::int32_t> true_parts(const World& truth, const ScenePoints& points) {
+    const auto all = measures(truth);
+    std::vector<std::int32_t> label(points.x.size(), -1);
+    in_parallel(label.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n) {
+            const Vec3 p = truth.to_room({points.x[n], points.y[n], points.z[n]});
+            double best = nearest_m;
+            for (std::size_t k = 0; k < all.size(); ++k) {
+                if (!all[k].near(p, best)) continue;
+                const double d = std::abs(all[k].at(p));
+                if (d < best) {
+                    best = d;
+                    label[n] = static_cast<std::int32_t>(k);
+                }
+            }
+        }
+    });
+    return label;
+}
+
+std::vector<std::int32_t> true_objects(const World& truth, const std::vector<std::int32_t>& part) {
+    std::vector<std::int32_t> object;
+    for (const std::int32_t p : part)
+        object.push_back(p < 0 ? -1 : truth.parts[static_cast<std::size_t>(p)].object);
+    return object;
+}
+
+SegmentationScore segmentation_score(const ScenePoints& points, std::span<const std::int32_t> truth,
+                                     std::span<const std::int32_t> predicted) {
+    SegmentationScore out = segmentation_score(truth, predicted);
+    out.cut_discrepancy =
+        cut_discrepancy({points.x, points.y, points.z}, truth, predicted, cut_cell_m);
+    return out;
+}
+
+double gravity_error_deg(const World& truth, const Scene& parse) {
+    const Vec3 a = truth.to_input({0, 0, 1}), &b = parse.up;
+    const double cosine = (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / std::hypot(b[0], b[1], b[2]);
+    return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+Score score(const World& truth, const Scene& parse) {
+    check(parse);
+    const ScenePoints& points = parse.points;
+    const auto part = true_parts(truth, points);
+    Score out;
+    out.parts = segmentation_score(points, part, points.primitive);
+    out.objects = segmentation_score(points, true_objects(truth, part), points.object);
+    out.volume = volume_score(truth, parse.solid, parse.voxel_size_m);
+    out.relations = relation_score(truth, parse, part);
+    out.gravity_deg = gravity_error_deg(truth, parse);
+    return out;
+}
+
+}  // namespace topple::scenes

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include "lab/solids/part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace topple::scenes {
+namespace {
+
+using solids::Frustum;
+
+Vec3 difference(const Vec3& a, const Vec3& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+// A cone, a cylinder or a lying cylinder about its axis.
+Frustum frustum(const Part& part) {
+    switch (part.shape) {
+        case Shape::lying_cylinder:
+            return {part.size[1] / 2, part.size[1] / 2, part.size[0] / 2};
+        case Shape::cone:
+            return {part.size[0] / 2, part.size[0] / 2 * part.top_ratio, part.size[2] / 2};
+        default:
+            return {part.size[0] / 2, part.size[0] / 2, part.size[2] / 2};
+    }
+}
+
+// Room to part axes; a lying cylinder's axis becomes the third.
+Vec3 turn(const Part& part, const Part::Heading& h, const Vec3& v) {
+    const Vec3 q{h.cosine * v[0] + h.sine * v[1], -h.sine * v[0] + h.cosine * v[1], v[2]};
+    if (part.shape == Shape::lying_cylinder) return {q[1], q[2], q[0]};
+    return {q[0], h.lean_cosine * q[1] + h.lean_sine * q[2],
+            -h.lean_sine * q[1] + h.lean_cosine * q[2]};
+}
+
+// The part's x, y and z in the room's frame, as columns.
+std::array<Vec3, 3> columns(const Part::Heading& h) {
+    return {Vec3{h.cosine, -h.sine * h.lean_cosine, h.sine * h.lean_sine},
+            Vec3{h.sine, h.cosine * h.lean_cosine, -h.cosine * h.lean_sine},
+            Vec3{0, h.lean_sine, h.lean_cosine}};
+}
+
+bool is_boxy(Shape shape) {
+    return shape == Shape::box || shape == Shape::rounded_box || shape == Shape::lying_cylinder;
+}
+
+// Bodies of revolution about z: corners (r, z) of the outline.
+solids::Profile outline(const Part& part) {
+    if (part.shape == Shape::revolved) return part.profile;
+    const Frustum f = frustum(part);
+    return {{f.low, -f.half_height}, {f.high, f.half_height}};
+}
+
+// How far the part reaches along each axis of the room from its center: least and greatest.
+std::array<Vec3, 2> reach(const Part& part) {
+    if (part.shape == Shape::sphere) {
+        const double r = part.size[0] / 2;
+        return {Vec3{-r, -r, -r}, Vec3{r, r, r}};
+    }
+    const auto turned = columns(part.heading());
+    std::array<Vec3, 2> out{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (is_boxy(part.shape)) {
+            const double r = part.rounding;
+            double half = r;
+            for (std::size_t a = 0; a < 3; ++a)
+                half += std::abs(turned[k][a]) * (part.size[a] - 2 * r) / 2;
+            out[0][k] = -half;
+            out[1][k] = half;
+            continue;
+        }
+        const double along = turned[k][2], across = std::sqrt(std::max(0.0, 1 - along * along));
+        for (const auto& [r, z] : outline(part)) {
+            out[0][k] = std::min(out[0][k], along * z - across * r);
+            out[1][k] = std::max(out[1][k], along * z + across * r);
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+const char* to_string(Shape shape) {
+    switch (shape) {
+        case Shape::box:
+            return "box";
+        case Shape::rounded_box:
+            return "rounded";
+        case Shape::cylinder:
+            return "cyl";
+        case Shape::lying_cylinder:
+            return "lying";
+        case Shape::sphere:
+            return "sph";
+        case Shape::cone:
+            return "cone";
+        case Shape::revolved:
+            return "revolved";
+    }
+    return "box";
+}
+
+double Part::volume() const {
+    using std::numbers::pi;
+    switch (shape) {
+        case Shape::box:
+            return size[0] * size[1] * size[2];
+        case Shape::rounded_box:
+            return solids::rounded_box_volume(size, rounding);
+        case Shape::cylinder:
+            return pi / 4 * size[0] * size[0] * size[2];
+        case Shape::lying_cylinder:
+            return pi / 4 * size[1] * size[1] * size[0];
+        case Shape::sphere:
+            return pi / 6 * size[0] * size[0] * size[0];
+        case Shape::cone:
+            return pi / 12 * size[0] * size[0] * size[2] * (1 + top_ratio + top_ratio * top_ratio);
+        case Shape::revolved:
+            return solids::revolved_volume(profile);
+    }
+    return 0;
+}
+
+Vec3 Part::center_of_mass() const {
+    double above = 0;  // along its own z
+    if (shape == Shape::cone) {
+        const double q = top_ratio;
+        above = size[2] / 4 * (1 + 2 * q + 3 * q * q) / (1 + q + q * q) - size[2] / 2;
+    } else if (shape == Shape::revolved) {
+        above = solids::revolved_center_z(profile);
+    }
+    const auto turned = columns(heading());
+    return {center[0] + turned[0][2] * above, center[1] + turned[1][2] * above,
+            center[2] + turned[2][2] * above};
+}
+
+Part::Heading Part::heading() const {
+    return {std::cos(yaw), std::sin(yaw), std::cos(lean), std::sin(lean)};
+}
+
+double Part::distance(const Vec3& p) const {
+    return distance(p, heading());
+}
+
+double Part::distance(const Vec3& p, const Heading& heading) const {
+    const Vec3 q = turn(*this, heading, difference(p, center));
+    switch (shape) {
+        case Shape::box:
+            return solids::box_distance(q, size);
+        case Shape::rounded_box:
+            return solids::rounded_box_distance(q, size, rounding);
+        case Shape::sphere:
+            return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) - size[0] / 2;
+        case Shape::revolved:
+            return solids::revolved_distance(q, profile);
+        default:
+            return solids::frustum_distance(q, frustum(*this));
+    }
+}
+
+Vec3 Part::normal(const Vec3& p) const {
+    constexpr double h = 1e-6;
+    const Heading way = heading();
+    Vec3 n{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        Vec3 a = p, b = p;
+        a[k] -= h;
+        b[k] += h;
+        n[k] = distance(b, way) - distance(a, way);
+    }
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (length == 0) return {0, 0, 1};
+    return {n[0] / length, n[1] / length, n[2] / length};
+}
+
+double Part::hit(const Vec3& origin, const Vec3& direction, const Heading& heading) const {
+    const Vec3 o = turn(*this, heading, difference(origin, center)),
+               d = turn(*this, heading, direction);
+    switch (shape) {
+        case Shape::box:
+            return solids::box_hit(o, d, size);
+        case Shape::rounded_box:
+            return solids::rounded_box_hit(o, d, size, rounding);
+        case Shape::sphere:
+            return solids::sphere_hit(o, d, size[0] / 2);
+        case Shape::revolved:
+            return solids::revolved_hit(o, d, profile);
+        default:
+            return solids::frustum_hit(o, d, frustum(*this));
+    }
+}
+
+std::array<Vec3, 3> Part::axes() const {
+    const auto c = columns(heading());
+    const Vec3 x{c[0][0], c[1][0], c[2][0]}, y{c[0][1], c[1][1], c[2][1]},
+        z{c[0][2], c[1][2], c[2][2]};
+    if (shape == Shape::lying_cylinder) return {y, z, x};
+    return {x, y, z};
+}
+
+double Part::bounding_radius() const {
+    if (shape == Shape::sphere) return size[0] / 2;
+    if (shape == Shape::box || shape == Shape::rounded_box)
+        return std::sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]) / 2;
+    if (shape == Shape::lying_cylinder) {
+        const Frustum f = frustum(*this);
+        return std::hypot(f.low, f.half_height);
+    }
+    double most = 0;
+    for (const auto& [r, z] : outline(*this)) most = std::max(most, std::hypot(r, z));
+    return most;
+}
+
+std::array<Vec3, 2> Part::bounds() const {
+    auto box = reach(*this);
+    for (Vec3& corner : box) {
+        for (std::size_t k = 0; k < 3; ++k) corner[k] += center[k];
+    }
+    return box;
+}
+
+Part Part::hull() const {
+    Part convex = *this;
+    if (shape == Shape::revolved) convex.profile = solids::convex_profile(profile);
+    return convex;
+}
+
+}  // namespace topple::scenes

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "lab/rooms/furnished_room.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "lab/random.h"
+#include "lab/solids/ground_truth.h"
+#include "lab/temporary_folder.h"
+
+namespace topple::scenes {
+namespace {
+
+constexpr std::uint64_t seeds = 50;
+
+// What holds for the plain rooms and for the varied ones.
+class FurnishedRoom : public ::testing::TestWithParam<bool> {
+  protected:
+    static World room(std::uint64_t seed) {
+        return furnished_room({.seed = seed, .varied = GetParam()});
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Furniture, FurnishedRoom, ::testing::Bool(),
+                         [](const auto& kind) { return kind.param ? "varied" : "plain"; });
+
+std::string name(const World& world, std::int32_t part) {
+    const Part& p = world.parts[static_cast<std::size_t>(part)];
+    return world.objects[static_cast<std::size_t>(p.object)].name + "/" + p.name + " #" +
+           std::to_string(part);
+}
+
+TEST_P(FurnishedRoom, SolidsNeverOverlap) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        for (std::size_t a = 0; a < world.parts.size(); ++a) {
+            for (std::size_t b = a + 1; b < world.parts.size(); ++b) {
+                const auto p = world.parts[a].bounds(), q = world.parts[b].bounds();
+                bool near = true;
+                for (std::size_t k = 0; k < 3; ++k)
+                    near = near && p[0][k] < q[1][k] - 1e-9 && q[0][k] < p[1][k] - 1e-9;
+                if (!near) continue;
+                EXPECT_GT(gap(world.parts[a], world.parts[b]), -1e-6)
+                    << "seed " << seed << ": " << name(world, static_cast<std::int32_t>(a))
+                    << " and " << name(world, static_cast<std::int32_t>(b));
+            }
+        }
+    }
+}
+
+TEST_P(FurnishedRoom, FixedPartsTouch) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        for (const auto& [a, b] : world.fixed) {
+            const double g = gap(world.parts[static_cast<std::size_t>(a)],
+                                 world.parts[static_cast<std::size_t>(b)]);
+            EXPECT_LT(std::abs(g), 1e-3)
+                << "seed " << seed << ": " << name(world, a) << " and " << name(world, b);
+        }
+    }
+}
+
+// What is carried touches its supporter's top with the middle of its underside, and is nowhere
+// lower.
+TEST_P(FurnishedRoom, SupportHolds) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        for (const auto& [supporter, supported] : world.support) {
+            const Part& below = world.parts[static_cast<std::size_t>(supporter)];
+            const Part& above = world.parts[static_cast<std::size_t>(supported)];
+            const std::string pair = name(world, supporter) + " under " + name(world, supported);
+            EXPECT_NEAR(above.bottom(), below.top(), 1e-9) << "seed " << seed << ": " << pair;
+            EXPECT_NEAR(below.distance({above.center[0], above.center[1], above.bottom()}), 0, 1e-9)
+                << "seed " << seed << ": " << pair;
+            EXPECT_NE(below.object, above.object);
+        }
+    }
+}
+
+// Points where a part touches the level plane at its lowest.
+std::vector<Vec3> footprint(const Part& part) {
+    const auto box = part.bounds();
+    std::vector<Vec3> points;
+    for (double x = box[0][0]; x <= box[1][0]; x += 0.004) {
+        for (double y = box[0][1]; y <= box[1][1]; y += 0.004) {
+            if (std::abs(part.distance({x, y, box[0][2]})) < 1e-3) points.push_back({x, y, 0});
+        }
+    }
+    return points;
+}
+
+// With one density everywhere, nothing that stands freely would tip: seen from any side, the center
+// of mass is over what its feet span.
+TEST_P(FurnishedRoom, EverythingStands) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        std::vector<std::vector<Vec3>> feet(world.objects.size());
+        for (const auto& pair : world.support) {
+            const Part& foot = world.parts[static_cast<std::size_t>(pair.second)];
+            auto& all = feet[static_cast<std::size_t>(foot.object)];
+            const auto points = footprint(foot);
+            all.insert(all.end(), points.begin(), points.end());
+        }
+        for (std::size_t o = 1; o < feet.size(); ++o) {
+            const std::string& object = world.objects[o].name;
+            const bool leans = object == "ladder" || object.find("leaning") != std::string::npos;
+            if (feet[o].empty() || leans) continue;  // on or against a wall
+            Vec3 center{};
+            double volume = 0;
+            for (const Part& part : world.parts) {
+                if (part.object != static_cast<std::int32_t>(o)) continue;
+                const Vec3 c = part.center_of_mass();
+                for (std::size_t a = 0; a < 2; ++a) center[a] += c[a] * part.volume();
+                volume += part.volume();
+            }
+            for (double angle = 0; angle < 6.28; angle += 0.1) {
+                const double x = std::cos(angle), y = std::sin(angle);
+                double reach = -100;
+                for (const Vec3& p : feet[o]) reach = std::max(reach, x * p[0] + y * p[1]);
+                EXPECT_GT(reach, (x * center[0] + y * center[1]) / volume)
+                    << "seed " << seed << ": " << object;
+            }
+        }
+    }
+}
+
+// Every object but the room is held: by a support, or by a joint with a wall.
+TEST_P(FurnishedRoom, NothingFloats) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        std::set<std::int32_t> held{0};
+        for (const auto& pair : world.support)
+            held.insert(world.parts[static_cast<std::size_t>(pair.second)].object);
+        for (const auto& [a, b] : world.fixed) {
+            const auto p = world.parts[static_cast<std::size_t>(a)].object,
+                       q = world.parts[static_cast<std::size_t>(b)].object;
+            if (p == 0) held.insert(q);
+            if (q == 0) held.insert(p);
+        }
+        EXPECT_EQ(held.size(), world.objects.size()) << "seed " << seed;
+    }
+}
+
+TEST_P(FurnishedRoom, PartsOfAnObjectAreJoined) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        std::vector<std::size_t> group(world.parts.size());
+        for (std::size_t k = 0; k < group.size(); ++k) group[k] = k;
+        const auto root = [&](std::size_t k) {
+            while (group[k] != k) k = group[k];
+            return k;
+        };
+        for (const auto& [a, b] : world.fixed)
+            group[root(static_cast<std::size_t>(a))] = root(static_cast<std::size_t>(b));
+        for (std::size_t a = 0; a < group.size(); ++a) {
+            for (std::size_t b = 0; b < a; ++b) {
+                if (world.parts[a].object == world.parts[b].object) {
+                    EXPECT_EQ(root(a), root(b))
+                        << "seed " << seed << ": " << name(world, static_cast<std::int32_t>(a));
+                }
+            }
+        }
+    }
+}
+
+TEST_P(FurnishedRoom, MiddleStaysFree) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        const auto middle = free_middle(world);
+        for (double u = -1; u <= 1; u += 0.1) {
+            for (double v = -1; v <= 1; v += 0.1) {
+                for (const double z : {0.1, 0.5, 1.0, 1.5, 1.9}) {
+                    const Vec3 p{world.room[0] / 2 + u * middle[0],
+                                 world.room[1] / 2 + v * middle[1], z};
+                    EXPECT_GT(world.distance(p).first, 0) << "seed " << seed;
+                }
+            }
+        }
+    }
+}
+
+TEST_P(FurnishedRoom, IsRichAndVaried) {
+    std::set<std::string> names;
+    std::set<Shape> shapes;
+    std::size_t fewest = 1000, most = 0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = room(seed);
+        for (const TrueObject& object : world.objects) names.insert(object.name);
+        for (const Part& part : world.parts) shapes.insert(part.shape);
+        fewest = std::min(fewest, world.objects.size());
+        most = std::max(most, world.objects.size());
+    }
+    EXPECT_GE(names.size(), GetParam() ? 55u : 25u);
+    EXPECT_EQ(shapes.size(), GetParam() ? 7u : 5u);
+    EXPECT_GE(fewest, 10u);
+    EXPECT_GE(most, 2 * fewest);
+}
+
+TEST_P(FurnishedRoom, SameSeedSameRoomOtherSeedAnother) {
+    const World a = room(7), b = room(7), c = room(8);
+    ASSERT_EQ(a.parts.size(), b.parts.size());
+    for (std::size_t k = 0; k < a.parts.size(); ++k) {
+        EXPECT_EQ(a.parts[k].center, b.parts[k].center);
+        EXPECT_EQ(a.parts[k].size, b.parts[k].size);
+    }
+    EXPECT_NE(a.room, c.room);
+    EXPECT_NE(a.room, furnished_room({.seed = 7, .varied = !GetParam()}).room);
+}
+
+// What leans touches a wall without being fixed to it.
+TEST(VariedRoom, LeaningThingsTouchAWall) {
+    std::size_t leaning = 0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const World world = furnished_room({.seed = seed, .varied = true});
+        for (const Part& part : world.parts) {
+            const std::string& object = world.objects[static_cast<std::size_t>(part.object)].name;
+            if (object.find("leaning") == std::string::npos) continue;
+            ++leaning;
+            double nearest = 1;
+            for (std::size_t wall = 1; wall <= 4; ++wall)
+                nearest = std::min(nearest, gap(part, world.parts[wall]));
+            EXPECT_NEAR(nearest, 0, 1e-3) << "seed " << seed << ": " << object;
+            EXPECT_NE(part.lean, 0);
+        }
+    }
+    EXPECT_GT(leaning, seeds / 3);
+}
+
+// All shapes and turns come back from the file of the truth.
+TEST(VariedRoom, TruthIsWrittenAndReadWhole) {
+    const World world = furnished_room({.seed = 4, .tilt_deg = 7, .varied = true});
+    const TemporaryFolder folder("topple_truth");
+    write_truth(folder.path() / "truth.json", world);
+    const World back = read_truth(folder.path() / "truth.json");
+    ASSERT_EQ(back.parts.size(), world.parts.size());
+    Random random(1);
+    for (std::size_t k = 0; k < world.parts.size(); ++k) {
+        EXPECT_DOUBLE_EQ(back.parts[k].volume(), world.parts[k].volume());
+        const Vec3 p{random.uniform(0, 5), random.uniform(0, 4), random.uniform(0, 2)};
+        EXPECT_NEAR(back.parts[k].distance(p), world.parts[k].distance(p), 1e-12);
+    }
+    EXPECT_EQ(back.support, world.support);
+}
+
+TEST_P(FurnishedRoom, TiltIsARotationByTheAngle) {
+    const World world = furnished_room({.seed = 3, .tilt_deg = 20, .varied = GetParam()});
+    const auto& t = world.tilt;
+    EXPECT_NEAR((t[0] + t[4] + t[8] - 1) / 2, std::cos(20 * 3.14159265358979 / 180), 1e-12);
+    const Vec3 p{1, 2, 3}, q = world.to_room(world.to_input(p));
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(p[k], q[k], 1e-12);
+}
+
+}  // namespace
+}  // namespace topple::scenes

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "lab/rooms/kinds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "lab/rooms/composer.h"
+#include "lab/scan/scan.h"
+#include "lab/temporary_folder.h"
+#include "physics/tipping.h"
+#include "topple/error.h"
+
+namespace topple::scenes {
+namespace {
+
+using Point = std::array<double, 2>;
+
+std::vector<std::string> composed() {
+    std::vector<std::string> names;
+    for (const std::string& kind : kinds()) {
+        if (kind != "plain" && kind != "varied") names.push_back(kind);
+    }
+    return names;
+}
+
+bool apart(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q, double by) {
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (p[0][a] >= q[1][a] - by || q[0][a] >= p[1][a] - by) return true;
+    }
+    return false;
+}
+
+double cross(const Point& a, const Point& b) {
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+// Places where a part's lowest rim meets another solid, within 3 mm.
+void add_contacts(const Part& foot, const Part& below, std::vector<Point>& contacts) {
+    const auto box = foot.bounds();
+    constexpr int steps = 24;
+    for (int i = 0; i <= steps; ++i) {
+        for (int k = 0; k <= steps; ++k) {
+            const Vec3 p{box[0][0] + (box[1][0] - box[0][0]) * i / steps,
+                         box[0][1] + (box[1][1] - box[0][1]) * k / steps, box[0][2]};
+            if (foot.distance(p) < 0.003 && below.distance(p) < 0.003)
+                contacts.push_back({p[0], p[1]});
+        }
+    }
+}
+
+struct Mass {
+    double of = 0;
+    Vec3 at{};
+};
+Mass mass_of(const World& world, std::int32_t object) {
+    Mass m;
+    for (const Part& part : world.parts) {
+        if (part.object != object) continue;
+        const double volume = part.volume();
+        const Vec3 c = part.center_of_mass();
+        for (std::size_t a = 0; a < 3; ++a) m.at[a] += volume * c[a];
+        m.of += volume;
+    }
+    for (double& a : m.at) a /= m.of;
+    return m;
+}
+
+// Each object with all that it carries alone; what several carry rests on each where it stands.
+std::vector<Mass> loads(const World& world) {
+    const auto below = supporters(world);
+    std::vector<Mass> out(world.objects.size());
+    for (std::size_t n = 1; n < out.size(); ++n)
+        out[n] = mass_of(world, static_cast<std::int32_t>(n));
+    for (std::size_t n = out.size(); n-- > 1;) {  // carriers come before what they carry
+        for (const std::int32_t s : below[n]) {
+            Mass& m = out[static_cast<std::size_t>(s)];
+            const double share = out[n].of / static_cast<double>(below[n].size());
+            for (std::size_t a = 0; a < 3 && below[n].size() == 1; ++a)
+                m.at[a] = (m.of * m.at[a] + share * out[n].at[a]) / (m.of + share);
+            m.of += share;
+        }
+    }
+    return out;
+}
+
+class EachKind : public ::testing::TestWithParam<std::string> {
+  protected:
+    static constexpr std::uint64_t seeds = 6;
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, EachKind, ::testing::ValuesIn(composed()),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(EachKind, solids_of_different_things_do_not_overlap) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const World world = make_world(GetParam(), seed);
+        std::vector<std::array<Vec3, 2>> boxes;
+        for (const Part& part : world.parts) boxes.push_back(part.bounds());
+        for (std::size_t a = 0; a < boxes.size(); ++a) {
+            for (std::size_t b = a + 1; b < boxes.size(); ++b) {
+                const Part &p = world.parts[a], &q = world.parts[b];
+                if (p.object == q.object || apart(boxes[a], boxes[b], 0.001)) continue;
+                EXPECT_GT(gap(p, q, 2e-4), -0.001)
+                    << seed << ": " << p.name << " of "
+                    << world.objects[static_cast<std::size_t>(p.object)].name << " in " << q.name
+                    << " of " << world.objects[static_cast<std::size_t>(q.object)].name;
+            }
+        }
+    }
+}
+
+// What leans is held from the side, too, and left out.
+TEST_P(EachKind, what_stands_has_its_middle_over_what_carries_it) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const World world = make_world(GetParam(), seed);
+        const auto fixed = fixed_objects(world);
+        const auto load = loads(world);
+        for (std::size_t n = 1; n < world.objects.size(); ++n) {
+            if (fixed[n]) continue;
+            const auto object = static_cast<std::int32_t>(n);
+            std::vector<Point> contacts;
+            bool leans = world.objects[n].where == "wall";
+            std::size_t supports = 0;
+            for (const auto& [below, foot] : world.support) {
+                const Part& part = world.parts[static_cast<std::size_t>(foot)];
+                if (part.object != object) continue;
+                ++supports;
+                leans = leans || (part.shape == Shape::box && part.lean != 0);
+                add_contacts(part, world.parts[static_cast<std::size_t>(below)], contacts);
+            }
+            EXPECT_GT(supports, 0u) << seed << ": " << world.objects[n].name;
+            if (leans) continue;
+            ASSERT_FALSE(contacts.empty()) << seed << ": " << world.objects[n].name << " floats";
+            auto corners = contacts;
+            for (const Mass& m : {mass_of(world, object), load[n]})
+                corners.push_back({m.at[0], m.at[1]});
+            const auto around = physics::convex_polygon(contacts),
+                       with = physics::convex_polygon(corners);
+            double area = 0, more = 0;
+            for (std::size_t k = 0; k < around.size(); ++k)
+                area += cross(around[k], around[(k + 1) % around.size()]) / 2;
+            for (std::size_t k = 0; k < with.size(); ++k)
+                more += cross(with[k], with[(k + 1) % with.size()]) / 2;
+            EXPECT_LE(more, 1.1 * area + 2e-4)
+                << seed << ": " << world.objects[n].name << " on " << world.objects[n].where;
+        }
+    }
+}
+
+TEST_P(EachKind, has_the_same_room_for_a_seed_and_another_for_the_next) {
+    const World a = make_world(GetParam(), 4), b = make_world(GetParam(), 4),
+                c = make_world(GetParam(), 5);
+    ASSERT_EQ(a.parts.size(), b.parts.size());
+    for (std::size_t n = 0; n < a.parts.size(); ++n) {
+        EXPECT_EQ(a.parts[n].center, b.parts[n].center);
+        EXPECT_EQ(a.parts[n].colour, b.parts[n].colour);
+    }
+    EXPECT_TRUE(a.room != c.room || a.parts.size() != c.parts.size());
+}
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_P(EachKind, scans_are_the_same_bytes_for_one_thread_and_three) {
+    const World world = make_world(GetParam(), 2);
+    const TemporaryFolder folder("topple_kinds");
+    for (const unsigned threads : {1u, 3u}) {
+        ScanOptions options{.kind = ScanKind::sparse, .seed = 2, .frames = 12};
+        options.threads = threads;
+        write_scan(folder.path() / std::to_string(threads), world, scan(world, options), options,
+                   GetParam());
+    }
+    for (const char* file : {"cloud.ply", "truth.ply", "truth.json"})
+        EXPECT_EQ(text_of(folder.path() / "1" / file), text_of(folder.path() / "3" / file)) << file;
+}
+
+TEST_P(EachKind, truth_names_every_object_that_it_labels) {
+    const World world = make_world(GetParam(), 3);
+    // Rays as coarse as 0.1 m apart take a far floor for an edge, whose pixels are mixed.
+    const ScanOptions options{.kind = ScanKind::laser, .seed = 3, .frames = 0, .spacing_m = 0.05};
+    const Scan made = scan(world, options);
+    const TemporaryFolder folder("topple_kinds");
+    write_scan(folder.path(), world, made, options, GetParam());
+    const auto truth = nlohmann::json::parse(text_of(folder.path() / "truth.json"));
+    std::set<int> ids;
+    for (const auto& object : truth["objects"]) ids.insert(object["id"].get<int>());
+    for (const auto& object : truth["objects"]) {
+        for (const auto& s : object["supporters"]) EXPECT_TRUE(ids.contains(s.get<int>()));
+        EXPECT_TRUE(object["fixed"].get<bool>() || !object["supporters"].empty()) << object;
+    }
+    for (const LabelledPoint& p : made.truth) ASSERT_TRUE(ids.contains(p.object));
+    // The scan lies on its truth but for noise and mixed pixels.
+    std::vector<Vec3> places;
+    for (const ColouredPoint& p : made.cloud) places.push_back(p.at);
+    const auto labels = nearest_objects(places, made.truth, 0.06);
+    const auto near = std::count_if(labels.begin(), labels.end(), [](auto l) { return l >= 0; });
+    EXPECT_GT(static_cast<double>(near), 0.9 * static_cast<double>(labels.size()));
+}
+
+TEST(Kinds, an_unknown_one_is_refused_by_name) {
+    try {
+        make_world("castle", 1);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("castle"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("kitchen"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace topple::scenes
