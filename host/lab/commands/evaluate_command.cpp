@@ -3,9 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cli/choice.h"
@@ -15,10 +13,8 @@
 #include "lab/commands/commands.h"
 #include "lab/evaluation/bases.h"
 #include "lab/evaluation/groupings.h"
-#include "lab/evaluation/joint_weights.h"
 #include "lab/evaluation/kind_score.h"
 #include "lab/evaluation/measures.h"
-#include "lab/evaluation/pictures.h"
 #include "lab/evaluation/room.h"
 #include "lab/evaluation/tables.h"
 #include "lab/rooms/kinds.h"
@@ -60,6 +56,16 @@ void make_folder(const std::filesystem::path& folder) {
     if (error) throw Error(ErrorKind::input, folder.string() + ": " + error.message());
 }
 
+void keep(const EvaluateArguments& a, const char* name, const std::string& text) {
+    io::replace_file(std::filesystem::path(a.out) / name, text);
+}
+
+// Prints a table, and keeps it.
+void tell(const EvaluateArguments& a, const char* name, const std::string& table) {
+    std::fputs(table.c_str(), stdout);
+    keep(a, name, table);
+}
+
 // Calls use() once for each room, with its options.
 template <typename Use>
 void for_each_room(EvaluateArguments& a, const Use& use) {
@@ -86,9 +92,7 @@ void compare_groupings(EvaluateArguments& a) {
                                                       evaluation::scan_parts(a.options),
                                                       evaluation::fitted_joint_weights));
     });
-    const std::string table = evaluation::table_of(rooms);
-    std::fputs(table.c_str(), stdout);
-    io::replace_file(std::filesystem::path(a.out) / "groupings.txt", table);
+    tell(a, "groupings.txt", evaluation::table_of(rooms));
 }
 
 void judge_bases(EvaluateArguments& a) {
@@ -97,29 +101,16 @@ void judge_bases(EvaluateArguments& a) {
         const evaluation::RoomParts room = evaluation::scan_parts(a.options);
         evaluation::add_voxels(room.world, *room.solids, room.axes, counts);
     });
-    const std::string table = evaluation::table_of(counts);
-    std::fputs(table.c_str(), stdout);
-    io::replace_file(std::filesystem::path(a.out) / "bases.txt", table);
+    tell(a, "bases.txt", evaluation::table_of(counts));
 }
 
 void judge_parses(EvaluateArguments& a) {
-    const std::filesystem::path out = a.out;
     std::vector<evaluation::RoomScore> scores;
-    std::optional<evaluation::Room> first;
-    for_each_room(a, [&] {
-        evaluation::Room room = evaluation::scan_and_parse(a.options);
-        scores.push_back(evaluation::judge(room));
-        if (!first) first = std::move(room);
-    });
-    const std::string tables = evaluation::tables(scores);
-    std::fputs(tables.c_str(), stdout);
-    io::replace_file(out / "tables.txt", tables);
-    io::replace_file(out / "scores.csv", evaluation::csv(scores));
-    evaluation::draw_segments(*first, out / "segments.png");
-    evaluation::draw_slices(*first, out / "slices.png");
-    evaluation::draw_segmentation_chart(scores, out / "segmentation.svg");
-    evaluation::draw_volume_chart(scores, out / "volume.svg");
-    print("\nPictures of the first room, charts and all figures: %s\n", a.out.c_str());
+    for_each_room(
+        a, [&] { scores.push_back(evaluation::judge(evaluation::scan_and_parse(a.options))); });
+    tell(a, "tables.txt", evaluation::tables(scores));
+    keep(a, "scores.csv", evaluation::csv(scores));
+    print("\nAll figures: %s\n", a.out.c_str());
 }
 
 void judge_kinds(EvaluateArguments& a) {
@@ -131,10 +122,8 @@ void judge_kinds(EvaluateArguments& a) {
             scores.push_back(evaluation::scan_and_judge({kind, a.scan, a.options.parse}));
         }
     }
-    const std::string table = evaluation::kinds_table(scores);
-    std::fputs(table.c_str(), stdout);
-    io::replace_file(std::filesystem::path(a.out) / "kinds.txt", table);
-    io::replace_file(std::filesystem::path(a.out) / "kinds.csv", evaluation::kinds_csv(scores));
+    tell(a, "kinds.txt", evaluation::kinds_table(scores));
+    keep(a, "kinds.csv", evaluation::kinds_csv(scores));
 }
 
 void judge_measures(EvaluateArguments& a) {
@@ -153,11 +142,8 @@ void judge_measures(EvaluateArguments& a) {
         for (unsigned n = 0; n < a.seeds; ++n)
             scores.push_back(evaluation::measure(shapes[s], a.first + n, options));
     }
-    const std::string table = evaluation::measures_table(scores);
-    std::fputs(table.c_str(), stdout);
-    io::replace_file(std::filesystem::path(a.out) / "measures.txt", table);
-    io::replace_file(std::filesystem::path(a.out) / "measures.csv",
-                     evaluation::measures_csv(scores));
+    tell(a, "measures.txt", evaluation::measures_table(scores));
+    keep(a, "measures.csv", evaluation::measures_csv(scores));
 }
 
 int run(EvaluateArguments& a) {
@@ -195,8 +181,7 @@ Command add_evaluate(CLI::App& app) {
     a->options.parse.voxel_m = 0.02;
     // No score depends on the disturbances; wind is the quickest.
     a->options.parse.disturbances = {"wind"};
-    app.add_option("-o,--output", a->out, "Folder for tables, charts and pictures")
-        ->capture_default_str();
+    app.add_option("-o,--output", a->out, "Folder for tables")->capture_default_str();
     app.add_option("--seeds", a->seeds, "How many rooms")->capture_default_str();
     app.add_option("--first", a->first, "Seed of the first room; the others follow")
         ->capture_default_str();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "lab/evaluation/bases.h"
 
-#include <cstdio>
 #include <vector>
 
+#include "lab/evaluation/text.h"
 #include "lab/scores/volume_score.h"
 #include "vdb/voxel_scene.h"
 
@@ -31,12 +31,9 @@ std::string table_of(const BasisCounts& counts) {
     std::string out = "basis           voxels     share that is solid\n";
     for (std::size_t b = 0; b < basis_count; ++b) {
         const BasisCounts::Count& count = counts.basis[b];
-        char line[96];
-        std::snprintf(
-            line, sizeof(line), "%-12s %9llu %12.4f\n", names[b],
-            static_cast<unsigned long long>(count.of),
+        append(
+            out, "%-12s %9llu %12.4f\n", names[b], static_cast<unsigned long long>(count.of),
             count.of > 0 ? static_cast<double>(count.right) / static_cast<double>(count.of) : 0.0);
-        out += line;
     }
     return out;
 }

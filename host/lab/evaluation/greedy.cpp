@@ -2,121 +2,99 @@
 #include "lab/evaluation/greedy.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace topple::evaluation {
 namespace {
 
-using graph::Group;
 using graph::GroupQuery;
 
+// Groups are known by their lowest node.
 class Pursuit {
   public:
     Pursuit(std::int32_t nodes, std::span<const graph::Edge> edges, const std::vector<bool>& pinned,
             const EnergyOf& energy_of)
-        : energy_of_(energy_of) {
-        std::int32_t ground = -1;
-        for (std::int32_t n = 0; n < nodes; ++n) {
-            const bool is_pinned = pinned[static_cast<std::size_t>(n)];
-            if (is_pinned && ground >= 0) {
-                group_[ground].nodes.push_back(n);
-                of_.push_back(ground);
-                continue;
-            }
-            if (is_pinned) ground = n;
-            group_[n] = {{n}, is_pinned};
-            of_.push_back(n);
-        }
-        for (const graph::Edge& e : edges) {
-            const auto pair =
-                std::minmax(of_[static_cast<std::size_t>(e.a)], of_[static_cast<std::size_t>(e.b)]);
-            if (pair.first != pair.second) touching_.insert(pair);
-        }
-        std::vector<GroupQuery> all;
-        for (const auto& [id, query] : group_) all.push_back(query);
-        const std::vector<double> value = ask(all);
-        std::size_t at = 0;
-        for (const auto& [id, query] : group_) energy_[id] = value[at++];
-        gain(touching_);
+        : edges_(edges), pinned_(pinned), energy_of_(energy_of) {
+        const auto first = std::ranges::find(pinned, true) - pinned.begin();
+        ground_ = static_cast<std::int32_t>(first);
+        for (std::int32_t n = 0; n < nodes; ++n) of_.push_back(pinned[at(n)] ? ground_ : n);
     }
 
     GreedyPartition run() {
-        for (;;) {
-            std::pair<std::int32_t, std::int32_t> best;
+        std::map<Pair, double> joined;  // energies of touching groups' unions
+        for (Pair best{-1, -1};; best = {-1, -1}) {
+            ask(joined);
             double most = 0;
-            for (const auto& [pair, union_energy] : union_) {
-                const double lowered =
-                    energy_.at(pair.first) + energy_.at(pair.second) - union_energy;
+            for (const auto& [pair, energy] : joined) {
+                const double lowered = alone_.at(pair.first) + alone_.at(pair.second) - energy;
                 if (lowered <= most) continue;
                 most = lowered;
                 best = pair;
             }
-            if (!(most > 0)) break;
-            join(best.first, best.second);
+            if (best.first < 0) return result();
+            alone_[best.first] = joined.at(best);
+            alone_.erase(best.second);
+            std::ranges::replace(of_, best.second, best.first);
+            std::erase_if(joined, [&](const auto& one) {
+                const auto [a, b] = one.first;
+                return a == best.first || a == best.second || b == best.first || b == best.second;
+            });
         }
-        return result();
     }
 
   private:
-    std::vector<double> ask(const std::vector<GroupQuery>& queries) const {
-        std::vector<double> value(queries.size());
-        if (!queries.empty()) energy_of_(queries, value);
-        return value;
-    }
-    GroupQuery joined(std::int32_t a, std::int32_t b) const {
-        const GroupQuery &x = group_.at(a), &y = group_.at(b);
-        GroupQuery out{{}, x.pinned || y.pinned};
-        std::ranges::merge(x.nodes, y.nodes, std::back_inserter(out.nodes));
+    using Pair = std::pair<std::int32_t, std::int32_t>;
+    static std::size_t at(std::int32_t n) { return static_cast<std::size_t>(n); }
+
+    GroupQuery query(std::int32_t a, std::int32_t b) const {
+        GroupQuery out{{}, false};
+        for (std::int32_t n = 0; n < static_cast<std::int32_t>(of_.size()); ++n) {
+            if (of_[at(n)] != a && of_[at(n)] != b) continue;
+            out.nodes.push_back(n);
+            out.pinned = out.pinned || pinned_[at(n)];
+        }
         return out;
     }
-    void gain(const std::set<std::pair<std::int32_t, std::int32_t>>& pairs) {
+    // Adds the energies that are not known yet, of groups and of what touches.
+    void ask(std::map<Pair, double>& joined) {
         std::vector<GroupQuery> queries;
-        for (const auto& [a, b] : pairs) queries.push_back(joined(a, b));
-        const std::vector<double> value = ask(queries);
-        std::size_t at = 0;
-        for (const auto& pair : pairs) union_[pair] = value[at++];
-    }
-    // Groups are known by their lowest node.
-    void join(std::int32_t a, std::int32_t b) {
-        energy_[a] = union_.at({a, b});
-        energy_.erase(b);
-        group_[a] = joined(a, b);
-        group_.erase(b);
-        std::set<std::pair<std::int32_t, std::int32_t>> fresh;
-        for (auto at = union_.begin(); at != union_.end();) {
-            const auto [x, y] = at->first;
-            if (x != a && x != b && y != a && y != b) {
-                ++at;
-                continue;
-            }
-            const std::int32_t other = x == a || x == b ? y : x;
-            if (other != a && other != b) fresh.insert(std::minmax(a, other));
-            at = union_.erase(at);
+        std::vector<double*> answers;
+        const auto want = [&](double& energy, std::int32_t a, std::int32_t b) {
+            queries.push_back(query(a, b));
+            answers.push_back(&energy);
+        };
+        for (const std::int32_t group : of_)
+            if (const auto [one, fresh] = alone_.try_emplace(group); fresh)
+                want(one->second, group, group);
+        for (const graph::Edge& e : edges_) {
+            const Pair pair = std::minmax(of_[at(e.a)], of_[at(e.b)]);
+            if (pair.first == pair.second) continue;
+            if (const auto [one, fresh] = joined.try_emplace(pair); fresh)
+                want(one->second, pair.first, pair.second);
         }
-        gain(fresh);
+        std::vector<double> energy(queries.size());
+        if (!queries.empty()) energy_of_(queries, energy);
+        for (std::size_t n = 0; n < energy.size(); ++n) *answers[n] = energy[n];
     }
     GreedyPartition result() const {
         GreedyPartition out;
-        out.label.resize(of_.size());
+        std::map<std::int32_t, std::int32_t> label;
         std::int32_t next = 0;
-        for (const auto& [id, query] : group_) {
-            out.energy += energy_.at(id);
-            const std::int32_t label = query.pinned ? -1 : next++;
-            for (const std::int32_t n : query.nodes) out.label[static_cast<std::size_t>(n)] = label;
+        for (const auto& [group, energy] : alone_) {
+            out.energy += energy;
+            label[group] = at(ground_) < of_.size() && group == of_[at(ground_)] ? -1 : next++;
         }
+        for (const std::int32_t group : of_) out.label.push_back(label.at(group));
         return out;
     }
 
+    std::span<const graph::Edge> edges_;
+    const std::vector<bool>& pinned_;
     const EnergyOf& energy_of_;
-    std::vector<std::int32_t> of_;  // first group of each node
-    std::map<std::int32_t, GroupQuery> group_;
-    std::map<std::int32_t, double> energy_;  // of each group
-    std::set<std::pair<std::int32_t, std::int32_t>> touching_;
-    std::map<std::pair<std::int32_t, std::int32_t>, double>
-        union_;  // energy of touching groups' unions
+    std::int32_t ground_ = 0;               // the first that is pinned
+    std::vector<std::int32_t> of_;          // the group of each node
+    std::map<std::int32_t, double> alone_;  // energy of each group
 };
 
 }  // namespace

@@ -28,6 +28,11 @@ constexpr std::size_t joint_features = 9;
 using JointFeatures = std::array<double, joint_features>;
 using JointWeights = std::array<double, joint_features>;
 
+// Fitted to generated rooms that are not those of the evaluation, by
+//   topple evaluate --fit-joints --seeds 8 --first 1001
+inline constexpr JointWeights fitted_joint_weights{-0.2928, 0.5854, 1.2190,  -1.1987, -0.4956,
+                                                   0.1490,  1.5973, -0.0406, -1.0715};
+
 // Of each pair of the contact graph, in its order. shell: by primitive.
 std::vector<JointFeatures> features_of(const graph::ContactGraph& contacts,
                                        std::span<const physics::Body> bodies,

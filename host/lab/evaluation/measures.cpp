@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 
+#include "core/vectors.h"
 #include "lab/evaluation/text.h"
 #include "lab/scan/depth_camera.h"
 #include "lab/temporary_folder.h"
@@ -26,13 +26,12 @@ double distance(const scenes::World& world, std::int32_t object, const Vec3& p) 
 }
 
 // Of each found object, the points that are the shape's, and all.
-const Object* find_object(const scenes::World& world, const Scene& scene,
-                          const std::function<Vec3(const Vec3&)>& to_room) {
+const Object* find_object(const scenes::World& world, const Scene& scene) {
     std::map<std::int32_t, std::size_t> of_shape, all;
     std::size_t points = 0;
     for (std::size_t n = 0; n < scene.points.x.size(); ++n) {
         const std::int32_t object = scene.points.object[n];
-        const Vec3 p = to_room({scene.points.x[n], scene.points.y[n], scene.points.z[n]});
+        const Vec3 p = world.to_room({scene.points.x[n], scene.points.y[n], scene.points.z[n]});
         const double off = distance(world, scenes::measured_object, p);
         bool shape = off < reach_m;
         for (std::int32_t other = 0; shape && other < 3; ++other)
@@ -49,25 +48,15 @@ const Object* find_object(const scenes::World& world, const Scene& scene,
     return best;
 }
 
-struct Scanned {
-    ParseResult parse;
-    std::function<Vec3(const Vec3&)> to_room;
-};
-
-Scanned scan_and_parse(const scenes::World& world, const MeasureOptions& options) {
-    const auto to_room = [&world](const Vec3& p) { return world.to_room(p); };
+ParseResult scan_and_parse(const scenes::World& world, const MeasureOptions& options) {
     if (!options.frames)
-        return {parse(scenes::clean_points(world, options.spacing_m), options.parse), to_room};
+        return parse(scenes::clean_points(world, options.spacing_m), options.parse);
     scenes::CameraOptions camera;
     camera.seed = world.seed;
     const scenes::TemporaryFolder folder("topple_measure");
     scenes::write_sequence(folder.path(), world,
                            scenes::film(world, camera, scenes::poses_around(world, camera.frames)));
-    return {parse(folder.path(), options.parse), to_room};
-}
-
-Vec3 difference(const Vec3& a, const Vec3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return parse(folder.path(), options.parse);
 }
 
 double median(std::vector<double> values) {
@@ -141,23 +130,22 @@ MeasureScore measure(const scenes::MeasuredShape& shape, std::uint64_t seed,
     MeasureScore out;
     out.name = shape.name;
     out.seed = seed;
-    const Scanned scanned = scan_and_parse(world, options);
-    for (const auto& [stage, seconds] : scanned.parse.scene.timings_s) out.parse_s += seconds;
-    const Object* found = find_object(world, scanned.parse.scene, scanned.to_room);
+    const Scene scene = scan_and_parse(world, options).scene;
+    for (const auto& [stage, seconds] : scene.timings_s) out.parse_s += seconds;
+    const Object* found = find_object(world, scene);
     if (!found) return out;
     out.mass = found->mass_kg / truth.mass_kg;
     out.barrier = found->barrier_J / truth.barrier_J;
     out.mass_sigmas = (found->mass_kg - truth.mass_kg) / found->mass_error_kg;
     out.barrier_sigmas = (found->barrier_J - truth.barrier_J) / found->barrier_error_J;
-    const Vec3 center = scanned.to_room(found->center_of_mass_m);
-    const Vec3 off = difference(center, truth.center_of_mass_m);
+    const Vec3 center = world.to_room(found->center_of_mass_m);
+    const Vec3 off = minus(center, truth.center_of_mass_m);
     out.center_m = std::hypot(off[0], off[1], off[2]);
     for (std::size_t a = 0; a < 3; ++a) {
         Vec3 along = found->center_of_mass_m;
         along[a] += 1;
-        const Vec3 axis = difference(scanned.to_room(along), center);
-        out.center_sigmas[a] = (off[0] * axis[0] + off[1] * axis[1] + off[2] * axis[2]) /
-                               found->center_of_mass_error_m[a];
+        const Vec3 axis = minus(world.to_room(along), center);
+        out.center_sigmas[a] = dot(off, axis) / found->center_of_mass_error_m[a];
     }
     return out;
 }

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "lab/evaluation/room.h"
 
-#include "lab/evaluation/rigid.h"
-#include "lab/evaluation/view.h"
+#include "lab/solids/rigid.h"
 #include "lab/temporary_folder.h"
+#include "vdb/voxel_scene.h"
 
 namespace topple::evaluation {
 namespace {
+
+using scenes::moved;
+using scenes::Sequence;
+using scenes::turned;
+using scenes::World;
 
 template <class Points>
 void move(const Mat4& m, Points& points) {
@@ -32,6 +37,25 @@ void move(const Mat4& m, Scene& scene) {
     scene.up = turned(m, scene.up);
 }
 
+// Whether a place projects into the image within the range.
+bool in_image(const Intrinsics& k, const Mat4& m, double range_m, const Vec3& p) {
+    const double d[3] = {p[0] - m[3], p[1] - m[7], p[2] - m[11]};
+    const double z = m[2] * d[0] + m[6] * d[1] + m[10] * d[2];
+    if (!(z > 0 && z <= range_m)) return false;
+    const double u = k.cx + k.fx * (m[0] * d[0] + m[4] * d[1] + m[8] * d[2]) / z;
+    const double v = k.cy + k.fy * (m[1] * d[0] + m[5] * d[1] + m[9] * d[2]) / z;
+    return u >= -0.5 && v >= -0.5 && u < k.width - 0.5 && v < k.height - 0.5;
+}
+
+void put(SolidVoxels& list, float x, float y, float z) {
+    list.x.push_back(x);
+    list.y.push_back(y);
+    list.z.push_back(z);
+    list.primitive.push_back(-1);
+    list.object.push_back(-1);
+    list.state.push_back(0);
+}
+
 }  // namespace
 
 Room scan_and_parse(const RoomOptions& options) {
@@ -48,6 +72,53 @@ Room scan_and_parse(const RoomOptions& options) {
     }
     room.part = scenes::true_parts(room.world, room.parse.scene.points);
     return room;
+}
+
+scenes::Domain in_view(const World& world, const scenes::CameraOptions& camera,
+                       const Sequence& sequence) {
+    return [&world, &sequence, range = camera.max_range_m](const Vec3& p) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (p[a] < 0 || p[a] > world.room[a]) return false;
+        }
+        const Vec3 q = world.to_input(p);
+        for (const DepthFrame& frame : sequence.frames) {
+            if (in_image(sequence.intrinsics, frame.camera_to_world, range, q)) return true;
+        }
+        return false;
+    };
+}
+
+SolidVoxels never_seen_empty(const Room& room, const scenes::Domain& domain) {
+    const vdb::VoxelScene& voxels = *room.parse.voxels;
+    const vdb::Tiles tiles = voxels.tiles(true);
+    const std::vector<std::uint8_t> states = voxels.states(tiles);
+    const auto& axes = voxels.frame().grid_from_input;
+    SolidVoxels out;
+    for (std::size_t at = 0; at < states.size(); ++at) {
+        if (states[at] == static_cast<std::uint8_t>(vdb::State::empty)) continue;
+        const std::size_t leaf = at / 512;
+        const auto local = static_cast<std::int32_t>(at % 512);
+        const double g[3] = {tiles.x[leaf] + (local >> 6) + 0.5,
+                             tiles.y[leaf] + (local >> 3 & 7) + 0.5,
+                             tiles.z[leaf] + (local & 7) + 0.5};
+        Vec3 own{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            own[c] = voxels.frame().voxel_m *
+                     (g[0] * axes[0][c] + g[1] * axes[1][c] + g[2] * axes[2][c]);
+        }
+        const Vec3 p = moved(room.input_from_grid, own);
+        if (!domain(room.world.to_room(p))) continue;
+        put(out, static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
+    }
+    return out;
+}
+
+SolidVoxels surface_alone(const SolidVoxels& solid) {
+    SolidVoxels out;
+    for (std::size_t n = 0; n < solid.x.size(); ++n) {
+        if (solid.state[n] == 0) put(out, solid.x[n], solid.y[n], solid.z[n]);
+    }
+    return out;
 }
 
 RoomScore judge(const Room& room) {

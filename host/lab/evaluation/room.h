@@ -7,6 +7,7 @@
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
 #include "lab/scores/score.h"
+#include "lab/solids/rigid.h"
 #include "topple/parse.h"
 
 // One generated room: scanned, parsed, judged.
@@ -25,12 +26,24 @@ struct Room {
     // The scene's points, solid voxels and up are in the world's input frame. The voxel grid is in
     // the frame of what was parsed: the camera's, where that was a single frame.
     ParseResult parse;
-    Mat4 input_from_grid{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    Mat4 input_from_grid = scenes::identity;
     std::vector<std::int32_t> part;  // the true part of each point, -1 for none
 };
 
 // Throws what generating and parsing throw.
 Room scan_and_parse(const RoomOptions& options);
+
+// The places inside of the room, between its floor, walls and height, that project into an image of
+// the sequence within the camera's range, hidden or not. Keeps references to its arguments.
+scenes::Domain in_view(const scenes::World& world, const scenes::CameraOptions& camera,
+                       const scenes::Sequence& sequence);
+
+// All voxels within the scan's bounds and the domain that were not seen to be empty, in the world's
+// input frame. Every voxel has state 0 and no primitive.
+SolidVoxels never_seen_empty(const Room& room, const scenes::Domain& domain);
+
+// The voxels whose state is 0.
+SolidVoxels surface_alone(const SolidVoxels& solid);
 
 // The measures of the paper's Section 6.
 struct RoomScore {

@@ -9,7 +9,6 @@
 #include "core/random.h"
 #include "device/devices.h"
 #include "lab/evaluation/greedy.h"
-#include "lab/evaluation/joint_weights.h"
 #include "topple/error.h"
 
 namespace topple::evaluation {
