@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 // The scenes' own random numbers: the same seed gives the same scene with every compiler and
@@ -29,6 +30,10 @@ class Random {
     constexpr int integer(int low, int high) {
         const auto span = static_cast<std::uint64_t>(high - low) + 1;
         return low + static_cast<int>(((next() >> 32) * span) >> 32);
+    }
+    // Of one of so many, each as likely.
+    constexpr std::size_t index(std::size_t count) {
+        return static_cast<std::size_t>(integer(0, static_cast<int>(count) - 1));
     }
     constexpr bool chance(double probability) { return uniform() < probability; }
     // Approximately standard normal: twelve 10-bit uniforms summed, so that no library's log or cos

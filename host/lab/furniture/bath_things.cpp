@@ -3,11 +3,38 @@
 #include <numbers>
 
 #include "lab/furniture/profiles.h"
-#include "lab/furniture/stacks.h"
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
 
 namespace topple::scenes {
+namespace {
+
+Blueprint soap_bottle(Random& random) {
+    Blueprint b("bottle");
+    const double w = random.uniform(0.04, 0.08), h = random.uniform(0.12, 0.24);
+    b.foot(b.rounded("body", 0, 0, 0, {w, 0.7 * w, h}, 0.012));
+    b.cylinder("cap", 0, 0, h, 0.5 * w, 0.03);
+    return b;
+}
+
+Stack towels(Random& random) {
+    Stack stack;
+    for (int k = random.integer(1, 4); k > 0; --k) {
+        const Vec3 size{random.uniform(0.24, 0.3), random.uniform(0.18, 0.24),
+                        random.uniform(0.03, 0.06)};
+        stack.emplace_back("towel");
+        stack.back().foot(stack.back().rounded("towel", 0, 0, 0, size, 0.012));
+    }
+    return stack;
+}
+
+Blueprint paper_roll(Random&) {
+    Blueprint b("roll");
+    b.foot(b.cylinder("roll", 0, 0, 0, 0.11, 0.1));
+    return b;
+}
+
+}  // namespace
 
 Blueprint make_basin(Random& random) {
     Blueprint b("basin");
@@ -76,39 +103,8 @@ Blueprint make_towel_rail(Random& random) {
 }
 
 Stack make_bath_item(Random& random, double clearance) {
-    return any_that_fits(clearance, [&] {
-        Stack stack;
-        switch (random.integer(0, 4)) {
-            case 0: {
-                Blueprint b("bottle");
-                const double w = random.uniform(0.04, 0.08), h = random.uniform(0.12, 0.24);
-                b.feet = {b.rounded("body", 0, 0, 0, {w, 0.7 * w, h}, 0.012)};
-                b.cylinder("cap", 0, 0, h, 0.5 * w, 0.03);
-                stack = {b};
-                break;
-            }
-            case 1: {
-                for (int k = random.integer(1, 4); k > 0; --k) {
-                    Blueprint b("towel");
-                    b.feet = {b.rounded("towel", 0, 0, 0,
-                                        {random.uniform(0.24, 0.3), random.uniform(0.18, 0.24),
-                                         random.uniform(0.03, 0.06)},
-                                        0.012)};
-                    stack.push_back(b);
-                }
-                break;
-            }
-            case 2: {
-                Blueprint b("roll");
-                b.feet = {b.cylinder("roll", 0, 0, 0, 0.11, 0.1)};
-                stack = {b};
-                break;
-            }
-            default:
-                stack = make_turned_item(random, clearance);
-        }
-        return stack;
-    });
+    return any_that_fits(random, clearance,
+                         {soap_bottle, towels, paper_roll, make_turned_item, make_turned_item});
 }
 
 Stack make_turned_item(Random& random, double clearance) {

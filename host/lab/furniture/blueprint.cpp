@@ -3,72 +3,66 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace topple::scenes {
 namespace {
 
-int put(Blueprint& blueprint, Part part) {
-    blueprint.parts.push_back(std::move(part));
-    return static_cast<int>(blueprint.parts.size()) - 1;
+// A part without a turn whose lowest point is at `bottom`.
+Part upright(Shape shape, const char* name, double x, double y, double bottom, const Vec3& size) {
+    return {shape, {x, y, bottom + size[2] / 2}, size, 0, 0, -1, name};
 }
 
 }  // namespace
 
+int Blueprint::add(Part part) {
+    parts.push_back(std::move(part));
+    return static_cast<int>(parts.size()) - 1;
+}
+
 int Blueprint::box(const char* part, double x, double y, double bottom, const Vec3& size,
                    double yaw) {
-    return put(*this, {Shape::box, {x, y, bottom + size[2] / 2}, size, yaw, 0, -1, part});
+    Part p = upright(Shape::box, part, x, y, bottom, size);
+    p.yaw = yaw;
+    return add(std::move(p));
 }
 
 int Blueprint::cylinder(const char* part, double x, double y, double bottom, double diameter,
                         double height) {
-    return put(*this, {Shape::cylinder,
-                       {x, y, bottom + height / 2},
-                       {diameter, diameter, height},
-                       0,
-                       0,
-                       -1,
-                       part});
+    return add(upright(Shape::cylinder, part, x, y, bottom, {diameter, diameter, height}));
 }
 
 int Blueprint::lying(const char* part, double x, double y, double bottom, double length,
                      double diameter, double yaw) {
-    return put(*this, {Shape::lying_cylinder,
-                       {x, y, bottom + diameter / 2},
-                       {length, diameter, diameter},
-                       yaw,
-                       0,
-                       -1,
-                       part});
+    Part p = upright(Shape::lying_cylinder, part, x, y, bottom, {length, diameter, diameter});
+    p.yaw = yaw;
+    return add(std::move(p));
 }
 
 int Blueprint::sphere(const char* part, double x, double y, double bottom, double diameter) {
-    return put(*this, {Shape::sphere,
-                       {x, y, bottom + diameter / 2},
-                       {diameter, diameter, diameter},
-                       0,
-                       0,
-                       -1,
-                       part});
+    return add(upright(Shape::sphere, part, x, y, bottom, {diameter, diameter, diameter}));
 }
 
 int Blueprint::cone(const char* part, double x, double y, double bottom, double diameter,
                     double height, double top_ratio) {
-    return put(*this, {Shape::cone,
-                       {x, y, bottom + height / 2},
-                       {diameter, diameter, height},
-                       0,
-                       top_ratio,
-                       -1,
-                       part});
+    Part p = upright(Shape::cone, part, x, y, bottom, {diameter, diameter, height});
+    p.top_ratio = top_ratio;
+    return add(std::move(p));
 }
 
 int Blueprint::rounded(const char* part, double x, double y, double bottom, const Vec3& size,
                        double rounding) {
-    Part p{Shape::rounded_box, {x, y, bottom + size[2] / 2}, size, 0, 0, -1, part};
+    Part p = upright(Shape::rounded_box, part, x, y, bottom, size);
     p.rounding = rounding;
-    return put(*this, std::move(p));
+    return add(std::move(p));
+}
+
+int Blueprint::cushion(const char* part, const Vec3& middle, const Vec3& size, double lean,
+                       double rounding) {
+    Part p{Shape::rounded_box, middle, size, 0, 0, -1, part};
+    p.lean = lean;
+    p.rounding = rounding;
+    return add(std::move(p));
 }
 
 int Blueprint::revolved(const char* part, double x, double y, double bottom,
@@ -83,7 +77,7 @@ int Blueprint::revolved(const char* part, double x, double y, double bottom,
     const Vec3 center{x, y, bottom + (low + high) / 2};
     Part p{Shape::revolved, center, {2 * radius, 2 * radius, high - low}, 0, 0, -1, part};
     p.profile = std::move(profile);
-    return put(*this, std::move(p));
+    return add(std::move(p));
 }
 
 int Blueprint::leaning(const char* part, double x, double y, double bottom, const Vec3& size,
@@ -92,26 +86,20 @@ int Blueprint::leaning(const char* part, double x, double y, double bottom, cons
     // From the lowest edge, which is on the side that it leans to, to the middle.
     const double back = (std::copysign(size[1], lean) * c - size[2] * s) / 2;
     const double up = (size[1] * std::abs(s) + size[2] * c) / 2;
-    Part p{Shape::box, {x - std::sin(yaw) * back, y + std::cos(yaw) * back, bottom + up},
-           size,       yaw,
-           0,          -1,
-           part};
+    const Vec3 middle{x - std::sin(yaw) * back, y + std::cos(yaw) * back, bottom + up};
+    Part p{Shape::box, middle, size, yaw, 0, -1, part};
     p.lean = lean;
-    return put(*this, std::move(p));
+    return add(std::move(p));
 }
 
 int Blueprint::bar(const char* part, const Vec3& from, const Vec3& to, double diameter) {
     const Vec3 way{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
     const double length = std::hypot(way[0], way[1], way[2]);
-    Part p{Shape::cylinder,
-           {(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2},
-           {diameter, diameter, length},
-           std::atan2(way[0], -way[1]),
-           0,
-           -1,
-           part};
+    const Vec3 middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2};
+    Part p{Shape::cylinder, middle, {diameter, diameter, length}, 0, 0, -1, part};
+    p.yaw = std::atan2(way[0], -way[1]);
     p.lean = std::acos(way[2] / length);
-    return put(*this, std::move(p));
+    return add(std::move(p));
 }
 
 int Blueprint::leg(const char* part, double x, double y, double bottom, double top, double diameter,
@@ -176,17 +164,9 @@ void Blueprint::stand_on(int part, double clearance, const char* where, double r
                         share * p.size[1] - rim, clearance, where});
 }
 
-std::array<Vec3, 2> Blueprint::bounds() const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    std::array<Vec3, 2> all{Vec3{infinity, infinity, infinity},
-                            Vec3{-infinity, -infinity, -infinity}};
-    for (const Part& part : parts) {
-        const auto one = part.bounds();
-        for (std::size_t k = 0; k < 3; ++k) {
-            all[0][k] = std::min(all[0][k], one[0][k]);
-            all[1][k] = std::max(all[1][k], one[1][k]);
-        }
-    }
+Bounds Blueprint::bounds() const {
+    Bounds all = no_bounds();
+    for (const Part& part : parts) extend(all, part.bounds());
     return all;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,9 @@ struct Surface {
     std::string where;
 };
 
+// The signs of x and y at the corners of a rectangle about the middle.
+inline constexpr std::array<std::array<double, 2>, 4> corners{{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}};
+
 struct Blueprint {
     explicit Blueprint(std::string object_name) : name(std::move(object_name)) {}
 
@@ -33,7 +37,8 @@ struct Blueprint {
     bool pile = false;                        // see TrueObject
     std::vector<Surface> surfaces;
 
-    // Each adds a part whose lowest point is at `bottom` and returns its index.
+    int add(Part part);  // returns its index, as all that follow
+    // Each adds a part whose lowest point is at `bottom`.
     int box(const char* part, double x, double y, double bottom, const Vec3& size, double yaw = 0);
     int cylinder(const char* part, double x, double y, double bottom, double diameter,
                  double height);
@@ -49,6 +54,9 @@ struct Blueprint {
     // A box with its top towards -y (before the yaw); (x, y) is the middle of its lowest edge.
     int leaning(const char* part, double x, double y, double bottom, const Vec3& size, double lean,
                 double yaw = 0);
+    // A rounded slab that leans, as a chair's back does: by its middle.
+    int cushion(const char* part, const Vec3& middle, const Vec3& size, double lean,
+                double rounding);
     // A round bar whose axis runs between two points.
     int bar(const char* part, const Vec3& from, const Vec3& to, double diameter);
     // A round leg that reaches from z = `bottom` to `top`, its upper end's middle at (x, y), its
@@ -64,14 +72,29 @@ struct Blueprint {
     };
     void arm(int base, const Vec3& from, const std::vector<Segment>& segments, double thickness,
              double shade);
-    void join(int a, int b) { joints.emplace_back(a, b); }
+    // Fixes the second to the first, and returns it.
+    int join(int a, int b) {
+        joints.emplace_back(a, b);
+        return b;
+    }
+    // Lets a part rest on what carries the thing, and returns it.
+    int foot(int part) {
+        feet.push_back(part);
+        return part;
+    }
     // The whole top of a part, less a rim.
     void stand_on(int part, double clearance, const char* where, double rim = 0.01);
 
-    std::array<Vec3, 2> bounds() const;
+    Bounds bounds() const;
     double height() const { return bounds()[1][2]; }
     double back() const { return bounds()[0][1]; }
 };
+
+// What one of these makes, each as likely.
+using BlueprintMake = Blueprint (*)(Random&);
+inline Blueprint one_of(Random& random, std::initializer_list<BlueprintMake> makes) {
+    return makes.begin()[random.index(makes.size())](random);
+}
 
 // Furniture.
 Blueprint make_table(Random& random);

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "lab/furniture/profiles.h"
-#include "lab/furniture/stacks.h"
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
 
@@ -28,14 +27,30 @@ Blueprint screen_on_stand(Random& random, double w, const char* name) {
 
 Blueprint flat_box(const char* name, const Vec3& size) {
     Blueprint b(name);
-    b.feet = {b.box("body", 0, 0, 0, size)};
+    b.foot(b.box("body", 0, 0, 0, size));
     return b;
+}
+
+Blueprint desk_monitor(Random& random) {
+    return screen_on_stand(random, random.uniform(0.42, 0.72), "monitor");
+}
+
+Blueprint mouse(Random&) {
+    return flat_box("mouse", {0.065, 0.11, 0.035});
+}
+
+Blueprint paper(Random& random) {
+    return flat_box("paper", {0.21, 0.297, random.uniform(0.01, 0.08)});
+}
+
+Blueprint small_bush(Random& random) {
+    return make_bush(random, random.uniform(0.3, 0.6));
 }
 
 Blueprint keyboard(Random& random) {
     Blueprint b("keyboard");
     const double w = random.uniform(0.28, 0.46), d = random.uniform(0.11, 0.17);
-    b.feet = {b.box("body", 0, 0, 0, {w, d, 0.014})};
+    b.foot(b.box("body", 0, 0, 0, {w, d, 0.014}));
     for (int row = 0; row < 4; ++row)
         b.box("keys", 0, (row - 1.5) * d / 4.6, 0.014, {w - 0.02, d / 6, 0.006});
     return b;
@@ -64,7 +79,7 @@ Stack books(Random& random) {
 
 Blueprint telephone(Random& random) {
     Blueprint b("telephone");
-    b.feet = {b.box("body", 0, 0, 0, {random.uniform(0.16, 0.2), 0.2, 0.045})};
+    b.foot(b.box("body", 0, 0, 0, {random.uniform(0.16, 0.2), 0.2, 0.045}));
     b.box("receiver", -0.05, 0, 0.045, {0.05, 0.19, 0.035});
     return b;
 }
@@ -72,7 +87,7 @@ Blueprint telephone(Random& random) {
 Blueprint desk_lamp(Random& random) {
     Blueprint b("desk lamp");
     const double h = random.uniform(0.28, 0.5), out = random.uniform(0.1, 0.2);
-    b.feet = {b.cylinder("base", 0, 0, 0, random.uniform(0.16, 0.2), 0.025)};
+    b.foot(b.cylinder("base", 0, 0, 0, random.uniform(0.16, 0.2), 0.025));
     b.bar("arm", {0, -0.03, 0.02}, {0, -0.08, h}, 0.016);
     b.bar("arm", {0, -0.085, h - 0.005}, {0, out - 0.08, h + 0.06}, 0.014);
     b.cone("shade", 0, out - 0.07, h - 0.01, 0.14, 0.1, 0.4);
@@ -93,8 +108,8 @@ Blueprint table_lamp(Random& random) {
 Blueprint candle_or_vase(Random& random) {
     Blueprint b("vase");
     const double r = random.uniform(0.03, 0.07), h = random.uniform(0.12, 0.3);
-    b.feet = {b.revolved("body", 0, 0, 0,
-                         solid_within(smooth_side({0.7 * r, r, 1.1 * r, 0.4 * r, 0.6 * r}, h)))};
+    b.foot(b.revolved("body", 0, 0, 0,
+                      solid_within(smooth_side({0.7 * r, r, 1.1 * r, 0.4 * r, 0.6 * r}, h))));
     for (int k = random.integer(0, 5); k > 0; --k) {
         const double a = random.uniform(0, 2 * pi), s = random.uniform(0.02, 0.12);
         b.bar("stem", {0, 0, h - 0.02}, {s * std::cos(a), s * std::sin(a), h + 0.2}, 0.006);
@@ -148,7 +163,7 @@ Blueprint make_basket(Random& random) {
         b.feet = {b.revolved("body", 0, 0, 0, vessel_within({{0.85 * r, 0}, {r, h}}, 0.008, 0.01))};
         return b;
     }
-    b.feet = {b.box("floor", 0, 0, 0, {w, d, t})};
+    b.foot(b.box("floor", 0, 0, 0, {w, d, t}));
     for (const double s : {-1.0, 1.0}) {
         b.box("side", s * (w - t) / 2, 0, t, {t, d, h});
         b.box("side", 0, s * (d - t) / 2, t, {w - 2 * t, t, h});
@@ -172,13 +187,12 @@ Blueprint make_lamp_on_pole(Random& random) {
     Blueprint b("floor lamp");
     const double h = random.uniform(1.2, 1.7);
     if (random.chance(0.5)) {
-        b.feet = {b.cylinder("base", 0, 0, 0, random.uniform(0.25, 0.32), 0.03)};
+        b.foot(b.cylinder("base", 0, 0, 0, random.uniform(0.25, 0.32), 0.03));
         b.cylinder("column", 0, 0, 0.03, 0.025, h);
     } else {
         for (int k = 0; k < 3; ++k) {
             const double a = 2 * pi * k / 3;
-            b.feet.push_back(
-                b.leg("leg", 0.02 * std::cos(a), 0.02 * std::sin(a), 0, h, 0.025, 0.2, a));
+            b.foot(b.leg("leg", 0.02 * std::cos(a), 0.02 * std::sin(a), 0, h, 0.025, 0.2, a));
         }
         b.cylinder("column", 0, 0, h - 0.05, 0.06, 0.08);
     }
@@ -188,72 +202,15 @@ Blueprint make_lamp_on_pole(Random& random) {
 }
 
 Stack make_desk_item(Random& random, double clearance) {
-    return any_that_fits(clearance, [&] {
-        Stack stack;
-        switch (random.integer(0, 11)) {
-            case 0:
-            case 1:
-                stack = {screen_on_stand(random, random.uniform(0.42, 0.72), "monitor")};
-                break;
-            case 2:
-                stack = {keyboard(random)};
-                break;
-            case 3:
-                stack = {flat_box("mouse", {0.065, 0.11, 0.035})};
-                break;
-            case 4:
-            case 5:
-                stack = books(random);
-                break;
-            case 6:
-                stack = {flat_box("paper", {0.21, 0.297, random.uniform(0.01, 0.08)})};
-                break;
-            case 7:
-                stack = {pen_holder(random)};
-                break;
-            case 8:
-                stack = {desk_lamp(random)};
-                break;
-            case 9:
-                stack = {telephone(random)};
-                break;
-            case 10:
-                stack = make_kitchen_item(random, clearance);
-                break;
-            default:
-                stack = make_turned_item(random, clearance);
-        }
-        return stack;
-    });
+    return any_that_fits(random, clearance,
+                         {desk_monitor, desk_monitor, keyboard, mouse, books, books, paper,
+                          pen_holder, desk_lamp, telephone, make_kitchen_item, make_turned_item});
 }
 
 Stack make_home_item(Random& random, double clearance) {
-    return any_that_fits(clearance, [&] {
-        Stack stack;
-        switch (random.integer(0, 7)) {
-            case 0:
-                stack = {table_lamp(random)};
-                break;
-            case 1:
-                stack = {candle_or_vase(random)};
-                break;
-            case 2:
-                stack = books(random);
-                break;
-            case 3:
-                stack = {make_bush(random, random.uniform(0.3, 0.6))};
-                break;
-            case 4:
-                stack = {make_basket(random)};
-                break;
-            case 5:
-                stack = make_kitchen_item(random, clearance);
-                break;
-            default:
-                stack = make_turned_item(random, clearance);
-        }
-        return stack;
-    });
+    return any_that_fits(random, clearance,
+                         {table_lamp, candle_or_vase, books, small_bush, make_basket,
+                          make_kitchen_item, make_turned_item, make_turned_item});
 }
 
 Stack make_soft_item(Random& random, double clearance) {
@@ -261,16 +218,15 @@ Stack make_soft_item(Random& random, double clearance) {
     if (random.chance(0.6)) {
         Blueprint b("pillow");
         const double t = random.uniform(0.09, 0.16);
-        b.feet = {b.rounded("pillow", 0, 0, 0,
-                            {random.uniform(0.35, 0.7), random.uniform(0.3, 0.42), t}, 0.46 * t)};
+        b.foot(b.rounded("pillow", 0, 0, 0,
+                         {random.uniform(0.35, 0.7), random.uniform(0.3, 0.42), t}, 0.46 * t));
         stack.push_back(b);
     } else {
         for (int k = random.integer(1, 4); k > 0; --k) {
             Blueprint b("clothes");
             const double t = random.uniform(0.03, 0.07);
-            b.feet = {b.rounded("cloth", 0, 0, 0,
-                                {random.uniform(0.22, 0.36), random.uniform(0.2, 0.3), t},
-                                0.4 * t)};
+            b.foot(b.rounded("cloth", 0, 0, 0,
+                             {random.uniform(0.22, 0.36), random.uniform(0.2, 0.3), t}, 0.4 * t));
             stack.push_back(b);
         }
     }
@@ -288,10 +244,10 @@ Blueprint make_row(Random& random, double length, double height, double depth) {
         if (x + t > length / 2) break;
         const double h = height * (what == 0 ? random.uniform(0.7, 1) : 1);
         const double d = depth * (what == 0 ? random.uniform(0.75, 1) : 1);
-        b.feet.push_back(b.box("volume", x + t / 2, (depth - d) / 2, 0, {t, d, h}));
+        b.foot(b.box("volume", x + t / 2, (depth - d) / 2, 0, {t, d, h}));
         x += t + random.uniform(0, 0.002);
     }
-    if (b.parts.empty()) b.feet.push_back(b.box("volume", 0, 0, 0, {length, depth, height}));
+    if (b.parts.empty()) b.foot(b.box("volume", 0, 0, 0, {length, depth, height}));
     return b;
 }
 

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "lab/furniture/profiles.h"
-#include "lab/furniture/stacks.h"
 #include "lab/furniture/things.h"
 
 namespace topple::scenes {
@@ -174,11 +173,8 @@ Blueprint make_fridge(Random& random) {
     const double w = random.uniform(0.54, 0.75), d = random.uniform(0.52, 0.65);
     const double h = random.uniform(0.85, 1.95), foot = 0.03;
     const int body = b.box("body", 0, 0, foot, {w, d, h - foot});
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(
-                b.cylinder("foot", sx * (w / 2 - 0.05), sy * (d / 2 - 0.05), 0, 0.04, foot));
-    }
+    for (const auto [sx, sy] : corners)
+        b.foot(b.cylinder("foot", sx * (w / 2 - 0.05), sy * (d / 2 - 0.05), 0, 0.04, foot));
     const double split = h > 1.3 ? random.uniform(0.3, 0.7) * h : h;
     const double side = random.chance(0.5) ? 1 : -1;
     double from = foot + 0.02;
@@ -203,11 +199,9 @@ Blueprint make_appliance(Random& random) {
                  h = random.uniform(0.8, 0.92), foot = 0.02;
     const int body = b.box("body", 0, 0, foot, {w, d, h - foot});
     for (const double s : {-1.0, 1.0})
-        b.feet.push_back(b.box("foot", s * (w / 2 - 0.04), 0, 0, {0.05, d - 0.06, foot}));
+        b.foot(b.box("foot", s * (w / 2 - 0.04), 0, 0, {0.05, d - 0.06, foot}));
     if (which == 1) {
-        const int ring =
-            b.lying("door", 0, d / 2 + 0.02, 0.25 * h, 0.05, 0.34, std::numbers::pi / 2);
-        (void)ring;
+        b.lying("door", 0, d / 2 + 0.02, 0.25 * h, 0.05, 0.34, std::numbers::pi / 2);
     } else {
         b.box("door", 0, d / 2 + 0.012, foot + 0.08, {w - 0.01, 0.024, h - 0.26});
         b.box("handle", 0, d / 2 + 0.05, h - 0.22, {0.7 * w, 0.02, 0.02});
@@ -225,11 +219,8 @@ Blueprint make_free_cupboard(Random& random) {
     Blueprint b("cupboard");
     const double w = random.uniform(0.5, 1.2), d = random.uniform(0.32, 0.5),
                  h = random.uniform(0.75, 1.9), leg = random.uniform(0.03, 0.15);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(
-                b.box("foot", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), 0, {0.05, 0.05, leg}));
-    }
+    for (const auto [sx, sy] : corners)
+        b.foot(b.box("foot", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), 0, {0.05, 0.05, leg}));
     const int top = add_cabinet(b, {0, -d / 2, leg, {w, d, h - leg}}, random, 0.45);
     b.stand_on(top, 0.5, "cupboard", 0.03);
     return b;
@@ -246,7 +237,7 @@ void add_ring_handle(Blueprint& b, double radius, double z, double size) {
 Blueprint kettle(Random& random) {
     Blueprint b("kettle");
     const double r = random.uniform(0.07, 0.1), h = random.uniform(0.15, 0.24);
-    b.feet = {b.revolved("body", 0, 0, 0, solid_within(smooth_side({r, r, 0.8 * r, 0.6 * r}, h)))};
+    b.foot(b.revolved("body", 0, 0, 0, solid_within(smooth_side({r, r, 0.8 * r, 0.6 * r}, h))));
     b.sphere("knob", 0, 0, h - 0.005, 0.03);
     b.box("handle", 0.75 * r + 0.05, 0, 0.9 * h, {0.14, 0.02, 0.02});
     b.box("handle", r + 0.055, 0, 0.35 * h, {0.02, 0.02, 0.55 * h});
@@ -278,7 +269,7 @@ Blueprint handled_mug(Random& random) {
 Blueprint jar(Random& random) {
     Blueprint b("jar");
     const double r = random.uniform(0.035, 0.07), h = random.uniform(0.08, 0.24);
-    b.feet = {b.cylinder("glass", 0, 0, 0, 2 * r, h)};
+    b.foot(b.cylinder("glass", 0, 0, 0, 2 * r, h));
     b.cylinder("lid", 0, 0, h, 1.9 * r, random.uniform(0.015, 0.03));
     return b;
 }
@@ -317,7 +308,7 @@ Blueprint toaster(Random& random) {
     const Vec3 size = big ? Vec3{random.uniform(0.42, 0.52), 0.34, 0.27}
                           : Vec3{random.uniform(0.24, 0.36), 0.17, 0.2};
     for (const double s : {-1.0, 1.0})
-        b.feet.push_back(b.box("foot", s * 0.4 * size[0], 0, 0, {0.03, 0.8 * size[1], 0.012}));
+        b.foot(b.box("foot", s * 0.4 * size[0], 0, 0, {0.03, 0.8 * size[1], 0.012}));
     b.rounded("body", 0, 0, 0.012, size, 0.015);
     b.box("door", -0.05, size[1] / 2 + 0.005, 0.03, {0.7 * size[0], 0.012, 0.8 * size[2]});
     b.box("handle", 0.28 * size[0], size[1] / 2 + 0.025, 0.06, {0.02, 0.03, 0.6 * size[2]});
@@ -327,39 +318,9 @@ Blueprint toaster(Random& random) {
 }  // namespace
 
 Stack make_kitchen_item(Random& random, double clearance) {
-    return any_that_fits(clearance, [&] {
-        Stack stack;
-        switch (random.integer(0, 10)) {
-            case 0:
-                stack = {kettle(random)};
-                break;
-            case 1:
-                stack = {pan(random)};
-                break;
-            case 2:
-            case 3:
-                stack = {handled_mug(random)};
-                break;
-            case 4:
-                stack = {jar(random)};
-                break;
-            case 5:
-                stack = {food_box(random)};
-                break;
-            case 6:
-                stack = plates(random);
-                break;
-            case 7:
-                stack = {board_flat(random)};
-                break;
-            case 8:
-                stack = {toaster(random)};
-                break;
-            default:
-                stack = make_turned_item(random, clearance);
-        }
-        return stack;
-    });
+    return any_that_fits(random, clearance,
+                         {kettle, pan, handled_mug, handled_mug, jar, food_box, plates, board_flat,
+                          toaster, make_turned_item, make_turned_item});
 }
 
 }  // namespace topple::scenes

@@ -9,8 +9,7 @@ namespace topple::scenes {
 Blueprint make_washer(Random& random, const Vec3& size) {
     Blueprint b(random.chance(0.5) ? "washing machine" : "dryer");
     const auto [w, d, h] = size;
-    const int body = b.box("body", 0, 0, 0, {w, d, h});
-    b.feet = {body};
+    const int body = b.foot(b.box("body", 0, 0, 0, {w, d, h}));
     if (random.chance(0.75)) {
         const double across = random.uniform(0.5, 0.75) * w;
         b.lying("door", 0, d / 2 + 0.005, 0.42 * h - across / 2, 0.03, across,
@@ -33,7 +32,7 @@ Blueprint make_ironing_board(Random& random) {
     b.cylinder("nose", length / 2 - 0.16, 0, h - 0.03, 0.8 * w, 0.03);
     for (const double s : {-1.0, 1.0}) {
         b.bar("leg", {s * 0.4, 0.0, 0.03}, {-s * 0.35, 0.0, h - 0.03}, 0.025);
-        b.feet.push_back(b.lying("foot", s * 0.4, 0, 0, 0.44, 0.03, std::numbers::pi / 2));
+        b.foot(b.lying("foot", s * 0.4, 0, 0, 0.44, 0.03, std::numbers::pi / 2));
     }
     b.surfaces.push_back({top, -0.06, 0, length / 2 - 0.12, w / 2 - 0.03, 0.4, "board"});
     return b;
@@ -44,9 +43,7 @@ Blueprint make_drying_rack(Random& random) {
     const double w = random.uniform(0.7, 1.2), d = random.uniform(0.45, 0.6),
                  h = random.uniform(0.85, 1.1), t = 0.018;
     for (const double s : {-1.0, 1.0}) {
-        for (const double e : {-1.0, 1.0}) {
-            b.feet.push_back(b.box("leg", s * w / 2, e * d / 2, 0, {t, t, h}));
-        }
+        for (const double e : {-1.0, 1.0}) b.foot(b.box("leg", s * w / 2, e * d / 2, 0, {t, t, h}));
         b.box("rail", s * w / 2, 0, h - t, {t, d, t});
     }
     for (int k = 0; k < 6; ++k) {
@@ -64,10 +61,10 @@ Blueprint make_pallet_jack(Random& random) {
     const double length = 1.15, high = random.uniform(0.05, 0.1);
     for (const double s : {-1.0, 1.0}) {
         b.box("fork", s * 0.19, 0, high - 0.05 + 0.03, {0.16, length, 0.05});
-        b.feet.push_back(b.lying("wheel", s * 0.19, length / 2 - 0.12, 0, 0.07, 0.08));
+        b.foot(b.lying("wheel", s * 0.19, length / 2 - 0.12, 0, 0.07, 0.08));
     }
     b.box("body", 0, -length / 2 - 0.06, 0.06, {0.5, 0.14, 0.4});
-    b.feet.push_back(b.lying("wheel", 0, -length / 2 - 0.1, 0, 0.2, 0.16));
+    b.foot(b.lying("wheel", 0, -length / 2 - 0.1, 0, 0.2, 0.16));
     b.bar("tiller", {0, -length / 2 - 0.08, 0.4}, {0, -length / 2 - random.uniform(0.1, 0.4), 1.15},
           0.04);
     return b;

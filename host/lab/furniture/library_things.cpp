@@ -75,7 +75,7 @@ Blueprint make_case_of_books(Random& random, const BookcaseMake& m) {
     Blueprint b("bookcase");
     const double t = 0.022, d = m.two_sided ? 2 * m.depth : m.depth;
     for (const double s : {-1.0, 1.0})
-        b.feet.push_back(b.box("side", s * (m.width - t) / 2, 0, 0, {t, d, m.height}));
+        b.foot(b.box("side", s * (m.width - t) / 2, 0, 0, {t, d, m.height}));
     const double inner = m.width - 2 * t, plinth = 0.08;
     const double wall = m.two_sided || m.back ? 0.01 : 0;
     const double wall_y = m.two_sided ? 0 : -d / 2 + wall / 2;
@@ -110,8 +110,7 @@ Blueprint make_books(Random& random, double length, double height, double depth,
     const double full = random.chance(0.6) ? 1 : random.uniform(0.5, 0.98);
     b.feet = add_books(b, {-length / 2, length / 2, depth / 2, 0, height, depth, 1, flush, full},
                        random);
-    if (b.parts.empty())
-        b.feet.push_back(b.box("volume", 0, 0, 0, {length, 0.8 * depth, 0.8 * height}));
+    if (b.parts.empty()) b.foot(b.box("volume", 0, 0, 0, {length, 0.8 * depth, 0.8 * height}));
     return b;
 }
 
@@ -121,9 +120,9 @@ Blueprint make_service_desk(Random& random) {
                  h = random.uniform(0.7, 0.95), t = 0.03;
     const int top = b.box("tabletop", 0, 0, h - t, {w, d, t});
     for (const double s : {-1.0, 1.0})
-        b.feet.push_back(b.box("cheek", s * (w / 2 - 0.03), 0, 0, {0.04, d, h - t}));
+        b.foot(b.box("cheek", s * (w / 2 - 0.03), 0, 0, {0.04, d, h - t}));
     const double rise = random.chance(0.6) ? random.uniform(0.12, 0.35) : 0;
-    b.feet.push_back(b.box("panel", 0, -d / 2 - 0.0125, 0, {w, 0.025, h + rise}));
+    b.foot(b.box("panel", 0, -d / 2 - 0.0125, 0, {w, 0.025, h + rise}));
     if (rise > 0) b.box("ledge", 0, -d / 2 + 0.06, h + rise, {w, 0.3, 0.025});
     b.surfaces.push_back({top, 0, 0.12, w / 2 - 0.05, d / 2 - 0.16, 0.8, "table"});
     return b;

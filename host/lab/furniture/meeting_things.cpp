@@ -16,26 +16,18 @@ Blueprint make_stacking_chair(Random& random) {
     for (const double s : {-1.0, 1.0}) {
         const double x = s * (w / 2 - 0.02);
         if (sled) {
-            b.feet.push_back(b.box("runner", x, 0, 0, {tube, d, tube}));
+            b.foot(b.box("runner", x, 0, 0, {tube, d, tube}));
             b.bar("tube", {x, d / 2 - tube, 0.01}, {x, d / 2 - 0.05, h - 0.02}, tube);
             b.bar("tube", {x, -d / 2 + tube, 0.01}, {x, -d / 2 + 0.05, h - 0.02}, tube);
         } else {
-            b.feet.push_back(b.box("leg", x, d / 2 - tube, 0, {tube, tube, h - 0.03}));
-            b.feet.push_back(b.box("leg", x, -d / 2 + tube, 0, {tube, tube, h - 0.03}));
+            b.foot(b.box("leg", x, d / 2 - tube, 0, {tube, tube, h - 0.03}));
+            b.foot(b.box("leg", x, -d / 2 + tube, 0, {tube, tube, h - 0.03}));
         }
         b.bar("tube", {0.9 * x, -d / 2 + 0.03, h - 0.02},
               {0.9 * x, -d / 2 + 0.03 - (high + 0.1) * std::tan(lean), h + high + 0.1}, tube);
     }
-    Part back{Shape::rounded_box,
-              {0, -d / 2 + 0.04 - std::sin(lean) * (0.12 + high / 2), h + 0.12 + high / 2},
-              {0.95 * w, 0.03, high},
-              0,
-              0,
-              -1,
-              "back"};
-    back.lean = lean;
-    back.rounding = 0.012;
-    b.parts.push_back(back);
+    b.cushion("back", {0, -d / 2 + 0.04 - std::sin(lean) * (0.12 + high / 2), h + 0.12 + high / 2},
+              {0.95 * w, 0.03, high}, lean, 0.012);
     if (random.chance(0.25)) {  // a board to write on
         b.box("post", w / 2 - 0.01, 0.05, h - 0.02, {0.025, 0.025, 0.22});
         b.box("tablet", w / 2 - 0.08, 0.14, h + 0.2, {0.26, 0.36, 0.016});
@@ -53,9 +45,9 @@ Blueprint make_lectern(Random& random) {
     const double w = random.uniform(0.45, 0.8), d = random.uniform(0.35, 0.55),
                  h = random.uniform(0.95, 1.15);
     if (random.chance(0.6)) {
-        b.feet = {b.box("body", 0, 0, 0, {w, d, h})};
+        b.foot(b.box("body", 0, 0, 0, {w, d, h}));
     } else {
-        b.feet = {b.box("base", 0, 0, 0, {w, d, 0.04})};
+        b.foot(b.box("base", 0, 0, 0, {w, d, 0.04}));
         b.box("column", 0, 0, 0.04, {0.2, 0.12, h - 0.04});
     }
     b.leaning("board", 0, -d / 2 + 0.02, h - 0.005, {w, 0.025, d}, 1.3);
@@ -90,7 +82,7 @@ Blueprint make_board_on_wheels(Random& random) {
     const double w = random.uniform(0.9, 1.9), low = random.uniform(0.6, 0.85),
                  h = random.uniform(0.9, 1.2);
     for (const double s : {-1.0, 1.0}) {
-        b.feet.push_back(b.box("foot", s * (w / 2 + 0.02), 0, 0, {0.04, 0.55, 0.06}));
+        b.foot(b.box("foot", s * (w / 2 + 0.02), 0, 0, {0.04, 0.55, 0.06}));
         b.box("post", s * (w / 2 + 0.02), 0, 0.06, {0.04, 0.04, low + h - 0.06});
     }
     b.box("panel", 0, 0, low, {w, 0.03, h});

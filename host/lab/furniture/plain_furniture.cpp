@@ -13,15 +13,13 @@ constexpr double over_table = 0.60;  // free height that things on tables may ta
 void four_legs(Blueprint& b, Random& random, int top, double w, double d, double height,
                double inset, double thickness) {
     const bool round = random.chance(0.4);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-            const double x = sx * (w / 2 - inset - thickness / 2),
-                         y = sy * (d / 2 - inset - thickness / 2);
-            const int leg = round ? b.cylinder("leg", x, y, 0, thickness, height)
-                                  : b.box("leg", x, y, 0, {thickness, thickness, height});
-            b.join(top, leg);
-            b.feet.push_back(leg);
-        }
+    for (const auto [sx, sy] : corners) {
+        const double x = sx * (w / 2 - inset - thickness / 2),
+                     y = sy * (d / 2 - inset - thickness / 2);
+        const int leg = round ? b.cylinder("leg", x, y, 0, thickness, height)
+                              : b.box("leg", x, y, 0, {thickness, thickness, height});
+        b.join(top, leg);
+        b.foot(leg);
     }
 }
 
@@ -43,13 +41,12 @@ Blueprint make_pedestal_table(Random& random) {
     Blueprint b("table");
     const double d = random.uniform(0.65, 1.05), h = random.uniform(0.68, 0.78), t = 0.035;
     const double foot = 0.035, column = random.uniform(0.08, 0.14);
-    const int base = b.cylinder("foot", 0, 0, 0, random.uniform(0.4, 0.55), foot);
+    const int base = b.foot(b.cylinder("foot", 0, 0, 0, random.uniform(0.4, 0.55), foot));
     const int middle = b.cylinder("column", 0, 0, foot, column, h - t - foot);
     const int top = random.chance(0.6) ? b.cylinder("tabletop", 0, 0, h - t, d, t)
                                        : b.box("tabletop", 0, 0, h - t, {d, d, t});
     b.join(top, middle);
     b.join(middle, base);
-    b.feet = {base};
     b.stand_on(top, over_table, "table");
     return b;
 }
@@ -60,7 +57,8 @@ Blueprint make_desk(Random& random) {
     const double w = random.uniform(1.1, 1.6), d = random.uniform(0.6, 0.8);
     const double h = random.uniform(0.70, 0.76), t = 0.03, panel = 0.03;
     const int top = b.box("tabletop", 0, 0, h - t, {w, d, t});
-    const int left = b.box("panel", -w / 2 + panel / 2, 0, 0, {panel, d - 0.04, h - t});
+    const int left =
+        b.join(top, b.box("panel", -w / 2 + panel / 2, 0, 0, {panel, d - 0.04, h - t}));
     int right;
     if (random.chance(0.5)) {
         const double drawers = random.uniform(0.32, 0.42);
@@ -68,7 +66,6 @@ Blueprint make_desk(Random& random) {
     } else {
         right = b.box("panel", w / 2 - panel / 2, 0, 0, {panel, d - 0.04, h - t});
     }
-    b.join(top, left);
     b.join(top, right);
     const double inner_low = -w / 2 + panel;
     const double inner_high = b.parts[static_cast<std::size_t>(right)].bounds()[0][0];
@@ -90,15 +87,14 @@ Blueprint make_chair(Random& random) {
     const int seat = b.box("seat", 0, 0, h - t, {w, d, t});
     four_legs(b, random, seat, w, d, h - t, 0.005, random.uniform(0.035, 0.05));
     if (random.chance(0.6)) {
-        const int back = b.box("back", 0, -d / 2 + 0.02, h, {w, 0.04, random.uniform(0.36, 0.48)});
-        b.join(seat, back);
+        b.join(seat, b.box("back", 0, -d / 2 + 0.02, h, {w, 0.04, random.uniform(0.36, 0.48)}));
     } else {  // two posts with a board across
         const double post = 0.035, up = random.uniform(0.22, 0.28),
                      board = random.uniform(0.14, 0.2);
         const int rest = b.box("back", 0, -d / 2 + 0.02, h + up, {w, 0.03, board});
         for (const double sx : {-1.0, 1.0}) {
-            const int p = b.box("post", sx * (w / 2 - post), -d / 2 + 0.02, h, {post, 0.03, up});
-            b.join(seat, p);
+            const int p = b.join(
+                seat, b.box("post", sx * (w / 2 - post), -d / 2 + 0.02, h, {post, 0.03, up}));
             b.join(p, rest);
         }
     }
@@ -113,18 +109,13 @@ Blueprint make_stool(Random& random) {
     const double h = random.chance(0.3) ? random.uniform(0.60, 0.72) : random.uniform(0.38, 0.48);
     const int seat = b.cylinder("seat", 0, 0, h - t, d, t);
     if (random.chance(0.3)) {
-        const int column = b.cylinder("column", 0, 0, 0.03, 0.06, h - t - 0.03);
-        const int foot = b.cylinder("foot", 0, 0, 0, d * 0.95, 0.03);
-        b.join(seat, column);
-        b.join(column, foot);
-        b.feet = {foot};
+        const int column = b.join(seat, b.cylinder("column", 0, 0, 0.03, 0.06, h - t - 0.03));
+        b.join(column, b.foot(b.cylinder("foot", 0, 0, 0, d * 0.95, 0.03)));
     } else {
         const double leg = 0.035;
         for (const auto& [x, y] :
              {std::pair{-0.28, -0.28}, {0.28, -0.28}, {-0.28, 0.28}, {0.28, 0.28}}) {
-            const int l = b.cylinder("leg", x * d, y * d, 0, leg, h - t);
-            b.join(seat, l);
-            b.feet.push_back(l);
+            b.foot(b.join(seat, b.cylinder("leg", x * d, y * d, 0, leg, h - t)));
         }
     }
     b.stand_on(seat, 0.3, "seat");
@@ -138,9 +129,7 @@ Blueprint make_bench(Random& random) {
     const int slab = b.box("slab", 0, 0, h - t, {w, d, t});
     const double x = w * random.uniform(0.32, 0.45);
     for (const double sx : {-1.0, 1.0}) {
-        const int side = b.box("support", sx * x, 0, 0, {0.05, d * 0.9, h - t});
-        b.join(slab, side);
-        b.feet.push_back(side);
+        b.foot(b.join(slab, b.box("support", sx * x, 0, 0, {0.05, d * 0.9, h - t})));
     }
     b.stand_on(slab, 0.3, "bench");
     return b;
@@ -181,12 +170,9 @@ Blueprint make_dresser(Random& random) {
     const double d = random.uniform(0.36, 0.5),
                  h = small ? random.uniform(0.4, 0.6) : random.uniform(0.7, 1.1);
     const double plinth = 0.06, t = 0.03;
-    const int foot = b.box("plinth", 0, -0.02, 0, {w - 0.06, d - 0.08, plinth});
-    const int body = b.box("body", 0, 0, plinth, {w, d, h - plinth - t});
-    const int top = b.box("top", 0, 0, h - t, {w + 0.03, d + 0.02, t});
-    b.join(foot, body);
-    b.join(body, top);
-    b.feet = {foot};
+    const int foot = b.foot(b.box("plinth", 0, -0.02, 0, {w - 0.06, d - 0.08, plinth}));
+    const int body = b.join(foot, b.box("body", 0, 0, plinth, {w, d, h - plinth - t}));
+    const int top = b.join(body, b.box("top", 0, 0, h - t, {w + 0.03, d + 0.02, t}));
     b.stand_on(top, 0.5, "dresser");
     return b;
 }
@@ -197,16 +183,15 @@ Blueprint make_sofa(Random& random) {
     const double w = armchair ? random.uniform(0.75, 0.95) : random.uniform(1.4, 2.1);
     const double d = random.uniform(0.75, 0.92), h = random.uniform(0.38, 0.46);
     const double arm = random.uniform(0.12, 0.2), back = random.uniform(0.14, 0.22);
-    const int seat = b.box("seat", 0, 0, 0, {w, d, h});
-    const int rest = b.box("back", 0, -d / 2 + back / 2, h, {w, back, random.uniform(0.32, 0.45)});
-    b.join(seat, rest);
+    const int seat = b.foot(b.box("seat", 0, 0, 0, {w, d, h}));
+    const int rest =
+        b.join(seat, b.box("back", 0, -d / 2 + back / 2, h, {w, back, random.uniform(0.32, 0.45)}));
     const double up = random.uniform(0.15, 0.25);
     for (const double sx : {-1.0, 1.0}) {
-        const int a = b.box("arm", sx * (w - arm) / 2, back / 2, h, {arm, d - back, up});
-        b.join(seat, a);
+        const int a =
+            b.join(seat, b.box("arm", sx * (w - arm) / 2, back / 2, h, {arm, d - back, up}));
         b.join(a, rest);
     }
-    b.feet = {seat};
     b.surfaces.push_back(
         {seat, 0, back / 2, w / 2 - arm - 0.01, (d - back) / 2 - 0.01, 0.4, "sofa"});
     return b;
@@ -217,9 +202,8 @@ Blueprint make_bed(Random& random) {
     const double w = random.uniform(0.95, 1.5), d = random.uniform(1.9, 2.05),
                  h = random.uniform(0.42, 0.55);
     const int frame = b.box("frame", 0, 0, 0, {w, d, h});
-    const int head =
-        b.box("headboard", 0, -d / 2 - 0.025, 0, {w + 0.06, 0.05, random.uniform(0.85, 1.1)});
-    b.join(frame, head);
+    const int head = b.join(frame, b.box("headboard", 0, -d / 2 - 0.025, 0,
+                                         {w + 0.06, 0.05, random.uniform(0.85, 1.1)}));
     b.feet = {frame, head};
     b.surfaces.push_back({frame, 0, -d / 2 + 0.35, w / 2 - 0.05, 0.28, 0.4, "bed"});
     return b;
@@ -232,9 +216,8 @@ Blueprint make_wall_cabinet(Random& random) {
     const int body = b.box("cabinet", 0, 0, 0, {w, d, h});
     if (random.chance(0.5)) {  // two doors that stand proud of the body
         for (const double sx : {-1.0, 1.0}) {
-            const int door =
-                b.box("door", sx * w / 4, d / 2 + 0.01, 0.01, {w / 2 - 0.02, 0.02, h - 0.02});
-            b.join(body, door);
+            b.join(body,
+                   b.box("door", sx * w / 4, d / 2 + 0.01, 0.01, {w / 2 - 0.02, 0.02, h - 0.02}));
         }
     }
     b.wall_parts = {body};
@@ -254,13 +237,10 @@ Blueprint make_floor_lamp(Random& random) {
     Blueprint b("floor lamp");
     const double base = random.uniform(0.26, 0.34), pole = random.uniform(1.15, 1.4),
                  shade = random.uniform(0.22, 0.3);
-    const int foot = b.cylinder("base", 0, 0, 0, base, 0.03);
-    const int stem = b.cylinder("pole", 0, 0, 0.03, 0.035, pole);
-    const int top = b.cone("shade", 0, 0, 0.03 + pole, random.uniform(0.32, 0.42), shade,
-                           random.uniform(0.5, 0.8));
-    b.join(foot, stem);
-    b.join(stem, top);
-    b.feet = {foot};
+    const int foot = b.foot(b.cylinder("base", 0, 0, 0, base, 0.03));
+    const int stem = b.join(foot, b.cylinder("pole", 0, 0, 0.03, 0.035, pole));
+    b.join(stem, b.cone("shade", 0, 0, 0.03 + pole, random.uniform(0.32, 0.42), shade,
+                        random.uniform(0.5, 0.8)));
     return b;
 }
 
@@ -268,14 +248,11 @@ Blueprint make_plant(Random& random) {
     Blueprint b("plant");
     const double pot = random.uniform(0.2, 0.3), h = random.uniform(0.22, 0.32),
                  trunk = random.uniform(0.25, 0.5);
-    const int base = b.cone("pot", 0, 0, 0, pot, h, random.uniform(1.15, 1.4));
-    const int stem = b.cylinder("trunk", 0, 0, h, random.uniform(0.03, 0.05), trunk);
+    const int base = b.foot(b.cone("pot", 0, 0, 0, pot, h, random.uniform(1.15, 1.4)));
+    const int stem = b.join(base, b.cylinder("trunk", 0, 0, h, random.uniform(0.03, 0.05), trunk));
     const double crown = random.uniform(0.32, 0.5);
-    const int top = b.cone("crown", 0, 0, h + trunk, crown, random.uniform(0.35, 0.6),
-                           random.uniform(0.0, 0.9));
-    b.join(base, stem);
-    b.join(stem, top);
-    b.feet = {base};
+    b.join(stem, b.cone("crown", 0, 0, h + trunk, crown, random.uniform(0.35, 0.6),
+                        random.uniform(0.0, 0.9)));
     return b;
 }
 
@@ -290,29 +267,25 @@ Blueprint make_bin(Random& random) {
 
 Blueprint make_crate(Random& random) {
     Blueprint b("crate");
-    const int body =
+    const int body = b.foot(
         b.box("crate", 0, 0, 0,
-              {random.uniform(0.28, 0.55), random.uniform(0.25, 0.4), random.uniform(0.2, 0.45)});
-    b.feet = {body};
+              {random.uniform(0.28, 0.55), random.uniform(0.25, 0.4), random.uniform(0.2, 0.45)}));
     b.stand_on(body, 0.35, "crate");
     return b;
 }
 
 Blueprint make_roll(Random& random) {
     Blueprint b("roll");
-    const int body = b.lying("roll", 0, 0, 0, random.uniform(0.5, 1.0), random.uniform(0.12, 0.22));
-    b.feet = {body};
+    b.foot(b.lying("roll", 0, 0, 0, random.uniform(0.5, 1.0), random.uniform(0.12, 0.22)));
     return b;
 }
 
 Blueprint make_marker(Random& random) {
     Blueprint b("marker");
     const double w = random.uniform(0.24, 0.32);
-    const int base = b.box("base", 0, 0, 0, {w, w, 0.03});
-    const int body =
-        b.cone("cone", 0, 0, 0.03, w * 0.8, random.uniform(0.32, 0.5), random.uniform(0.1, 0.25));
-    b.join(base, body);
-    b.feet = {base};
+    const int base = b.foot(b.box("base", 0, 0, 0, {w, w, 0.03}));
+    b.join(base, b.cone("cone", 0, 0, 0.03, w * 0.8, random.uniform(0.32, 0.5),
+                        random.uniform(0.1, 0.25)));
     return b;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -19,24 +20,22 @@ Blueprint cup(Random& random) {
 Blueprint bottle(Random& random) {
     Blueprint b("bottle");
     const double d = random.uniform(0.065, 0.1), h = random.uniform(0.17, 0.24);
-    const int body = b.cylinder("body", 0, 0, 0, d, h);
+    const int body = b.foot(b.cylinder("body", 0, 0, 0, d, h));
     if (random.chance(0.5)) {
-        const int neck = b.cylinder("neck", 0, 0, h, 0.4 * d, random.uniform(0.05, 0.09));
-        b.join(body, neck);
+        b.join(body, b.cylinder("neck", 0, 0, h, 0.4 * d, random.uniform(0.05, 0.09)));
     }
-    b.feet = {body};
     return b;
 }
 
 Blueprint lying_bottle(Random& random) {
     Blueprint b("lying bottle");
-    b.feet = {b.lying("body", 0, 0, 0, random.uniform(0.18, 0.28), random.uniform(0.065, 0.09))};
+    b.foot(b.lying("body", 0, 0, 0, random.uniform(0.18, 0.28), random.uniform(0.065, 0.09)));
     return b;
 }
 
 Blueprint ball(Random& random) {
     Blueprint b("ball");
-    b.feet = {b.sphere("ball", 0, 0, 0, random.uniform(0.1, 0.2))};
+    b.foot(b.sphere("ball", 0, 0, 0, random.uniform(0.1, 0.2)));
     return b;
 }
 
@@ -52,30 +51,26 @@ Blueprint vase(Random& random) {
     Blueprint b("vase");
     const double d = random.uniform(0.06, 0.09), belly = random.uniform(1.5, 2.1);
     const double low = random.uniform(0.09, 0.14), high = random.uniform(0.08, 0.14);
-    const int base = b.cone("lower", 0, 0, 0, d, low, belly);
-    const int neck = b.cone("upper", 0, 0, low, d * belly, high, random.uniform(0.35, 0.6));
-    b.join(base, neck);
-    b.feet = {base};
+    const int base = b.foot(b.cone("lower", 0, 0, 0, d, low, belly));
+    b.join(base, b.cone("upper", 0, 0, low, d * belly, high, random.uniform(0.35, 0.6)));
     return b;
 }
 
 Blueprint pyramid(Random& random) {
     Blueprint b("cone");
-    b.feet = {b.cone("cone", 0, 0, 0, random.uniform(0.12, 0.18), random.uniform(0.16, 0.26),
-                     random.chance(0.5) ? 0.0 : random.uniform(0.1, 0.4))};
+    b.foot(b.cone("cone", 0, 0, 0, random.uniform(0.12, 0.18), random.uniform(0.16, 0.26),
+                  random.chance(0.5) ? 0.0 : random.uniform(0.1, 0.4)));
     return b;
 }
 
 Blueprint plain_desk_lamp(Random& random) {
     Blueprint b("lamp");
     const double pole = random.uniform(0.2, 0.3), shade = random.uniform(0.12, 0.17);
-    const int base = b.cylinder("base", 0, 0, 0, random.uniform(0.13, 0.18), 0.025);
-    const int stem = b.cylinder("pole", 0, 0, 0.025, random.uniform(0.02, 0.035), pole);
-    const int top = b.cone("shade", 0, 0, 0.025 + pole, random.uniform(0.2, 0.26), shade,
-                           random.uniform(0.45, 1.0));
-    b.join(base, stem);
-    b.join(stem, top);
-    b.feet = {base};
+    const int base = b.foot(b.cylinder("base", 0, 0, 0, random.uniform(0.13, 0.18), 0.025));
+    const int stem =
+        b.join(base, b.cylinder("pole", 0, 0, 0.025, random.uniform(0.02, 0.035), pole));
+    b.join(stem, b.cone("shade", 0, 0, 0.025 + pole, random.uniform(0.2, 0.26), shade,
+                        random.uniform(0.45, 1.0)));
     return b;
 }
 
@@ -84,22 +79,17 @@ Blueprint monitor(Random& random) {
     const double w = random.uniform(0.42, 0.62), h = w * random.uniform(0.55, 0.65),
                  t = random.uniform(0.03, 0.05);
     const double up = random.uniform(0.1, 0.16), foot = 0.02, neck = 0.045;
-    const int base = b.box("base", 0, 0, 0, {random.uniform(0.2, 0.28), 0.18, foot});
-    const int stem = b.box("neck", 0, -0.03, foot, {0.07, neck, up + 0.5 * h - foot});
-    const int panel = b.box("panel", 0, -0.03 + (neck + t) / 2, up, {w, t, h});
-    b.join(base, stem);
-    b.join(stem, panel);
-    b.feet = {base};
+    const int base = b.foot(b.box("base", 0, 0, 0, {random.uniform(0.2, 0.28), 0.18, foot}));
+    const int stem = b.join(base, b.box("neck", 0, -0.03, foot, {0.07, neck, up + 0.5 * h - foot}));
+    b.join(stem, b.box("panel", 0, -0.03 + (neck + t) / 2, up, {w, t, h}));
     return b;
 }
 
 Blueprint laptop(Random& random) {
     Blueprint b("laptop");
     const double w = random.uniform(0.3, 0.38), d = random.uniform(0.21, 0.26);
-    const int base = b.box("keyboard", 0, 0, 0, {w, d, 0.022});
-    const int screen = b.box("screen", 0, -d / 2 + 0.008, 0.022, {w, 0.016, d});
-    b.join(base, screen);
-    b.feet = {base};
+    const int base = b.foot(b.box("keyboard", 0, 0, 0, {w, d, 0.022}));
+    b.join(base, b.box("screen", 0, -d / 2 + 0.008, 0.022, {w, 0.016, d}));
     return b;
 }
 
@@ -110,7 +100,7 @@ std::vector<Blueprint> stack(Random& random) {
     const int count = random.integer(2, 4);
     for (int k = 0; k < count; ++k) {
         Blueprint b("book");
-        b.feet = {b.box("book", 0, 0, 0, {w, d, random.uniform(0.045, 0.09)})};
+        b.foot(b.box("book", 0, 0, 0, {w, d, random.uniform(0.045, 0.09)}));
         b.stand_on(0, 1, "stack", 0);
         all.push_back(std::move(b));
         w *= random.uniform(0.75, 0.92);
@@ -125,30 +115,10 @@ double footprint_radius(const Blueprint& b) {
 }
 
 std::vector<Blueprint> any_item(Random& random) {
-    switch (random.integer(0, 10)) {
-        case 0:
-            return {cup(random)};
-        case 1:
-            return {bottle(random)};
-        case 2:
-            return {lying_bottle(random)};
-        case 3:
-            return {ball(random)};
-        case 4:
-            return {plain_carton(random)};
-        case 5:
-            return {vase(random)};
-        case 6:
-            return {pyramid(random)};
-        case 7:
-            return {plain_desk_lamp(random)};
-        case 8:
-            return {monitor(random)};
-        case 9:
-            return {laptop(random)};
-        default:
-            return stack(random);
-    }
+    constexpr std::array makes{cup,  bottle,  lying_bottle,    ball,    plain_carton,
+                               vase, pyramid, plain_desk_lamp, monitor, laptop};
+    const std::size_t which = random.index(makes.size() + 1);
+    return which < makes.size() ? std::vector{makes[which](random)} : stack(random);
 }
 
 }  // namespace

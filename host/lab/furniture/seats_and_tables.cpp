@@ -13,12 +13,10 @@ using std::numbers::pi;
 
 // Four upright legs under a slab whose lower face is at `high`.
 void add_legs(Blueprint& b, double w, double d, double high, double thick, bool round) {
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-            const double x = sx * (w - thick) / 2, y = sy * (d - thick) / 2;
-            b.feet.push_back(round ? b.cylinder("leg", x, y, 0, thick, high)
-                                   : b.box("leg", x, y, 0, {thick, thick, high}));
-        }
+    for (const auto [sx, sy] : corners) {
+        const double x = sx * (w - thick) / 2, y = sy * (d - thick) / 2;
+        b.foot(round ? b.cylinder("leg", x, y, 0, thick, high)
+                     : b.box("leg", x, y, 0, {thick, thick, high}));
     }
 }
 
@@ -87,7 +85,7 @@ Blueprint make_office_chair(Random& random) {
     for (int k = 0; k < 5; ++k) {
         const double a = first + 2 * pi * k / 5, c = std::cos(a), s = std::sin(a);
         b.bar("star", {0, 0, 0.1}, {reach * c, reach * s, 0.065}, 0.03);
-        b.feet.push_back(b.sphere("caster", reach * c, reach * s, 0, 0.055));
+        b.foot(b.sphere("caster", reach * c, reach * s, 0, 0.055));
     }
     b.cylinder("column", 0, 0, 0.08, 0.05, h - 0.14);
     b.box("plate", 0, 0, h - 0.08, {0.2, 0.2, 0.03});
@@ -95,16 +93,8 @@ Blueprint make_office_chair(Random& random) {
     b.rounded("seat", 0, 0.02, h - 0.055, {w, d, 0.075}, 0.03);
     const double lean = random.uniform(0.02, 0.25), high = random.uniform(0.35, 0.75);
     b.box("spine", 0, -d / 2, h - 0.06, {0.06, 0.03, 0.25});
-    Part back{Shape::rounded_box,
-              {0, -d / 2 - 0.02 - std::sin(lean) * high / 2, h + 0.12 + high / 2},
-              {0.92 * w, 0.06, high},
-              0,
-              0,
-              -1,
-              "back"};
-    back.lean = lean;
-    back.rounding = 0.025;
-    b.parts.push_back(back);
+    b.cushion("back", {0, -d / 2 - 0.02 - std::sin(lean) * high / 2, h + 0.12 + high / 2},
+              {0.92 * w, 0.06, high}, lean, 0.025);
     if (random.chance(0.6)) {
         for (const double s : {-1.0, 1.0}) {
             b.box("arm", s * (w / 2 + 0.03), 0, h + 0.18, {0.06, 0.26, 0.03});
@@ -123,14 +113,13 @@ Blueprint make_work_table(Random& random) {
     switch (random.integer(0, 3)) {
         case 0:  // cheeks and a panel
             for (const double s : {-1.0, 1.0})
-                b.feet.push_back(
-                    b.box("cheek", s * (w / 2 - over - 0.01), 0, 0, {0.022, d - 0.04, h - t}));
+                b.foot(b.box("cheek", s * (w / 2 - over - 0.01), 0, 0, {0.022, d - 0.04, h - t}));
             b.box("panel", 0, -d / 2 + 0.06, h - t - 0.4, {w - 2 * over - 0.04, 0.018, 0.4});
             break;
         case 1:  // T feet
             for (const double s : {-1.0, 1.0}) {
                 const double x = s * (w / 2 - over - 0.1);
-                b.feet.push_back(b.box("foot", x, 0, 0, {0.07, d - 0.06, 0.04}));
+                b.foot(b.box("foot", x, 0, 0, {0.07, d - 0.06, 0.04}));
                 b.box("column", x, 0, 0.04, {0.06, 0.08, h - t - 0.04});
             }
             b.box("rail", 0, 0, h - t - 0.06, {w - 2 * over - 0.2, 0.05, 0.04});
@@ -161,11 +150,8 @@ Blueprint make_drawer_unit(Random& random) {
     Blueprint b("drawer unit");
     const double w = random.uniform(0.35, 0.9), d = random.uniform(0.35, 0.55),
                  h = random.uniform(0.4, 1.1);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(
-                b.cylinder("caster", sx * (w / 2 - 0.04), sy * (d / 2 - 0.04), 0, 0.04, 0.04));
-    }
+    for (const auto [sx, sy] : corners)
+        b.foot(b.cylinder("caster", sx * (w / 2 - 0.04), sy * (d / 2 - 0.04), 0, 0.04, 0.04));
     const int top = add_cabinet(b, {0, -d / 2, 0.04, {w, d - 0.02, h - 0.04}}, random, 0.15);
     b.stand_on(top, 0.5, "drawers", 0.02);
     return b;
@@ -179,8 +165,7 @@ Blueprint make_bookcase(Random& random, double most_height) {
     const double plinth = random.chance(0.5) ? 0.06 : 0;
     const int shelves = std::max(2, static_cast<int>((h - plinth) / random.uniform(0.24, 0.42)));
     const bool back = random.chance(0.75);
-    for (const double s : {-1.0, 1.0})
-        b.feet.push_back(b.box("side", s * (w - t) / 2, 0, 0, {t, d, h}));
+    for (const double s : {-1.0, 1.0}) b.foot(b.box("side", s * (w - t) / 2, 0, 0, {t, d, h}));
     if (back) b.box("back", 0, -d / 2 + 0.004, plinth, {w - 2 * t, 0.008, h - plinth});
     if (plinth > 0) b.box("plinth", 0, d / 2 - 0.03, 0, {w - 2 * t, 0.015, plinth});
     const double pitch = (h - plinth - t) / shelves;
@@ -202,11 +187,8 @@ Blueprint make_couch(Random& random) {
     const double w = seats * seat + 2 * arm, d = random.uniform(0.75, 1.0);
     const double foot = random.uniform(0.02, 0.14), base = random.uniform(0.12, 0.25);
     const double back = random.uniform(0.12, 0.25), high = random.uniform(0.68, 0.95);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(
-                b.cylinder("foot", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, 0.045, foot));
-    }
+    for (const auto [sx, sy] : corners)
+        b.foot(b.cylinder("foot", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, 0.045, foot));
     b.box("base", 0, 0, foot, {w, d, base});
     const double top = foot + base, soft = random.uniform(0.1, 0.18);
     b.rounded("backrest", 0, -d / 2 + back / 2, top, {w, back, high - top}, 0.3 * back);
@@ -220,16 +202,8 @@ Blueprint make_couch(Random& random) {
         b.surfaces.push_back(
             {cushion, x, back / 2, seat / 2 - 0.02, (d - back) / 2 - 0.05, 0.5, "sofa"});
         if (random.chance(0.6)) {
-            Part loose{Shape::rounded_box,
-                       {x, -d / 2 + back + 0.06, top + soft + 0.2},
-                       {seat - 0.03, 0.12, 0.36},
-                       0,
-                       0,
-                       -1,
-                       "back cushion"};
-            loose.lean = random.uniform(0.05, 0.25);
-            loose.rounding = 0.05;
-            b.parts.push_back(loose);
+            b.cushion("back cushion", {x, -d / 2 + back + 0.06, top + soft + 0.2},
+                      {seat - 0.03, 0.12, 0.36}, random.uniform(0.05, 0.25), 0.05);
             b.surfaces.back().half_y -= 0.1;
             b.surfaces.back().y += 0.1;
         }
@@ -241,11 +215,8 @@ Blueprint make_tv_board(Random& random) {
     Blueprint b("low board");
     const double w = random.uniform(1.0, 2.2), d = random.uniform(0.32, 0.48),
                  h = random.uniform(0.3, 0.7), leg = random.uniform(0.04, 0.18);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(
-                b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.05), 0, {0.04, 0.04, leg}));
-    }
+    for (const auto [sx, sy] : corners)
+        b.foot(b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.05), 0, {0.04, 0.04, leg}));
     const int cells = random.integer(2, 4);
     for (int k = 0; k < cells; ++k)
         add_cabinet(b,
@@ -269,8 +240,7 @@ Blueprint make_double_bed(Random& random) {
     const int mattress =
         b.rounded("mattress", 0, 0.01, top - 0.03, {w - 0.04, d - 0.06, soft}, 0.25 * soft);
     if (random.chance(0.8))
-        b.feet.push_back(
-            b.box("headboard", 0, -d / 2 - 0.02, 0, {w, 0.04, top + random.uniform(0.2, 0.7)}));
+        b.foot(b.box("headboard", 0, -d / 2 - 0.02, 0, {w, 0.04, top + random.uniform(0.2, 0.7)}));
     if (random.chance(0.3)) b.box("footboard", 0, d / 2 + 0.015, leg, {w, 0.03, frame + soft});
     if (random.chance(0.6)) {  // a cover that hangs over the sides
         const double over = random.uniform(0.15, soft + 0.1),

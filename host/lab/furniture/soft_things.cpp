@@ -55,12 +55,10 @@ Blueprint make_corner_sofa(Random& random) {
     if (random.chance(0.6))
         b.rounded("armrest", -side * (w / 2 + 0.08), -back / 2, foot,
                   {0.16, deep + back, top + 0.18 - foot}, 0.05);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(b.cylinder("foot", sx * (w / 2 - 0.08), sy * (deep / 2 - 0.06), 0,
-                                        0.05, foot + 0.001));
-    }
-    b.feet.push_back(b.cylinder("foot", end, deep / 2 + chaise - 0.08, 0, 0.05, foot + 0.001));
+    for (const auto [sx, sy] : corners)
+        b.foot(
+            b.cylinder("foot", sx * (w / 2 - 0.08), sy * (deep / 2 - 0.06), 0, 0.05, foot + 0.001));
+    b.foot(b.cylinder("foot", end, deep / 2 + chaise - 0.08, 0, 0.05, foot + 0.001));
     return b;
 }
 
@@ -68,8 +66,7 @@ Blueprint make_ottoman(Random& random) {
     Blueprint b("ottoman");
     const double w = random.uniform(0.4, 1.1), d = random.uniform(0.4, 0.7),
                  h = random.uniform(0.32, 0.48);
-    const int body = b.box("base", 0, 0, 0, {w - 0.01, d - 0.01, h - 0.08});
-    b.feet = {body};
+    b.foot(b.box("base", 0, 0, 0, {w - 0.01, d - 0.01, h - 0.08}));
     const int top = b.rounded("seat", 0, 0, h - 0.1, {w, d, 0.1}, 0.03);
     b.stand_on(top, 0.6, "ottoman", 0.05);
     return b;
@@ -94,7 +91,7 @@ Blueprint make_backpack(Random& random) {
     Blueprint b(random.chance(0.5) ? "backpack" : "bag");
     const double w = random.uniform(0.24, 0.42), d = random.uniform(0.12, 0.25),
                  h = random.uniform(0.28, 0.52);
-    b.feet = {b.rounded("body", 0, 0, 0, {w, d, h}, 0.35 * d)};
+    b.foot(b.rounded("body", 0, 0, 0, {w, d, h}, 0.35 * d));
     b.rounded("pocket", 0, d / 2, 0.01, {0.8 * w, 0.1, 0.5 * h}, 0.04);
     for (const double s : {-1.0, 1.0})
         b.box("strap", s * 0.25 * w, -d / 2 - 0.012, 0.1, {0.05, 0.03, 0.7 * h});
@@ -104,7 +101,7 @@ Blueprint make_backpack(Random& random) {
 Blueprint make_cloth_pile(Random& random) {
     Blueprint b("clothes");
     const double w = random.uniform(0.3, 0.8), d = random.uniform(0.25, 0.6);
-    b.feet = {b.rounded("cloth", 0, 0, 0, {w, d, 0.06}, 0.028)};
+    b.foot(b.rounded("cloth", 0, 0, 0, {w, d, 0.06}, 0.028));
     for (int k = random.integer(3, 7); k > 0; --k) {
         const double t = random.uniform(0.07, 0.22), s = random.uniform(0.35, 0.6);
         b.rounded("cloth", random.uniform(-0.2, 0.2) * w, random.uniform(-0.2, 0.2) * d, 0.01,
@@ -118,11 +115,9 @@ Blueprint make_soft_bed(Random& random) {
     const double w = random.uniform(0.8, 2.0), d = random.uniform(1.9, 2.15);
     const double low = random.chance(0.4) ? 0.02 : random.uniform(0.08, 0.25),
                  frame = random.uniform(0.1, 0.25), soft = random.uniform(0.14, 0.3);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0,
-                                   {0.07, 0.07, low + 0.001}));
-    }
+    for (const auto [sx, sy] : corners)
+        b.foot(
+            b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, {0.07, 0.07, low + 0.001}));
     b.box("frame", 0, 0, low, {w, d, frame});
     const double top = low + frame + soft - 0.03;
     b.rounded("mattress", 0, 0, low + frame - 0.03, {w - 0.02, d - 0.02, soft}, 0.06);
@@ -147,27 +142,9 @@ Blueprint make_soft_bed(Random& random) {
 }
 
 Stack make_floor_thing(Random& random, double clearance) {
-    Blueprint b("box");
-    switch (random.integer(0, 6)) {
-        case 0:
-        case 1:
-            b = make_backpack(random);
-            break;
-        case 2:
-            b = make_cloth_pile(random);
-            break;
-        case 3:
-            b = make_carton(random, random.uniform(0.2, 0.7));
-            break;
-        case 4:
-            b = make_basket(random);
-            break;
-        case 5:
-            b = make_open_bin(random);
-            break;
-        default:
-            b = make_bag(random);
-    }
+    const auto carton = [](Random& r) { return make_carton(r, r.uniform(0.2, 0.7)); };
+    const Blueprint b = one_of(random, {make_backpack, make_backpack, make_cloth_pile, carton,
+                                        make_basket, make_open_bin, make_bag});
     return b.height() < clearance ? Stack{b} : Stack{};
 }
 

@@ -15,7 +15,7 @@ Blueprint crate(Random& random) {
     Blueprint b("crate");
     const double w = random.uniform(0.3, 0.6), d = random.uniform(0.25, 0.4),
                  h = random.uniform(0.16, 0.34), t = 0.014;
-    b.feet = {b.box("floor", 0, 0, 0, {w, d, t})};
+    b.foot(b.box("floor", 0, 0, 0, {w, d, t}));
     const int slats = random.chance(0.5) ? 1 : random.integer(2, 3);
     for (int k = 0; k < slats; ++k) {
         const double high = (h - t) / slats, z = t + k * high;
@@ -26,10 +26,8 @@ Blueprint crate(Random& random) {
         }
     }
     if (slats > 1) {
-        for (const double sx : {-1.0, 1.0}) {
-            for (const double sy : {-1.0, 1.0})
-                b.box("post", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), t, {0.03, 0.03, h - t});
-        }
+        for (const auto [sx, sy] : corners)
+            b.box("post", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), t, {0.03, 0.03, h - t});
     }
     return b;
 }
@@ -37,7 +35,7 @@ Blueprint crate(Random& random) {
 Blueprint canister(Random& random) {
     Blueprint b("canister");
     const double w = random.uniform(0.15, 0.3), h = random.uniform(0.22, 0.4);
-    b.feet = {b.rounded("body", 0, 0, 0, {w, 0.7 * w, h}, 0.03)};
+    b.foot(b.rounded("body", 0, 0, 0, {w, 0.7 * w, h}, 0.03));
     b.cylinder("cap", 0.3 * w, 0, h, 0.05, 0.03);
     b.box("handle", -0.1 * w, 0, h + 0.03, {0.5 * w, 0.03, 0.02});
     for (const double s : {-0.33, 0.13}) b.box("handle", s * w, 0, h - 0.01, {0.02, 0.03, 0.05});
@@ -52,13 +50,13 @@ Blueprint make_carton(Random& random, double most) {
                     random.uniform(0.3, 0.9) * most};
     const bool open = random.chance(0.15) && size[2] > 0.15;
     if (!open) {
-        b.feet = {b.box("box", 0, 0, 0, size)};
+        b.foot(b.box("box", 0, 0, 0, size));
         if (random.chance(0.5))
             b.box("tape", 0, 0, size[2] - 0.001, {0.05, size[1] + 0.002, 0.002});
         return b;
     }
     constexpr double t = 0.006;
-    b.feet = {b.box("floor", 0, 0, 0, {size[0], size[1], t})};
+    b.foot(b.box("floor", 0, 0, 0, {size[0], size[1], t}));
     for (const double s : {-1.0, 1.0}) {
         b.box("side", s * (size[0] - t) / 2, 0, t, {t, size[1], size[2] - t});
         b.box("side", 0, s * (size[1] - t) / 2, t, {size[0] - 2 * t, t, size[2] - t});
@@ -78,7 +76,7 @@ Blueprint make_rack(Random& random, double most_height) {
     for (int k = 0; k <= bays; ++k) {
         const double x = -w / 2 + post / 2 + k * bay;
         for (const double s : {-1.0, 1.0})
-            b.feet.push_back(b.box("upright", x, s * (d - post) / 2, 0, {post, post, h}));
+            b.foot(b.box("upright", x, s * (d - post) / 2, 0, {post, post, h}));
         for (double z = 0.25; z < h - 0.4; z += 0.7)
             b.bar("brace", {x, -(d - post) / 2, z}, {x, (d - post) / 2, z + 0.35}, 0.6 * post);
     }
@@ -115,7 +113,7 @@ Blueprint make_pallet(Random& random) {
     Blueprint b("pallet");
     const double w = 1.2, d = random.chance(0.6) ? 0.8 : 1.0;
     for (const double s : {-1.0, 0.0, 1.0}) {
-        b.feet.push_back(b.box("runner", 0, s * (d / 2 - 0.05), 0, {w, 0.1, 0.022}));
+        b.foot(b.box("runner", 0, s * (d / 2 - 0.05), 0, {w, 0.1, 0.022}));
         for (const double x : {-1.0, 0.0, 1.0})
             b.box("block", x * (w / 2 - 0.07), s * (d / 2 - 0.05), 0.022, {0.14, 0.1, 0.1});
     }
@@ -131,11 +129,8 @@ Blueprint make_pallet(Random& random) {
 Blueprint make_trolley(Random& random) {
     Blueprint b("trolley");
     const double w = random.uniform(0.6, 1.1), d = random.uniform(0.45, 0.65), z = 0.14;
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(
-                b.lying("wheel", sx * (w / 2 - 0.1), sy * (d / 2 - 0.08), 0, 0.03, z, pi / 2));
-    }
+    for (const auto [sx, sy] : corners)
+        b.foot(b.lying("wheel", sx * (w / 2 - 0.1), sy * (d / 2 - 0.08), 0, 0.03, z, pi / 2));
     const int deck = b.box("deck", 0, 0, z - 0.005, {w, d, 0.03});
     const double h = random.uniform(0.8, 1.0);
     for (const double s : {-1.0, 1.0})
@@ -168,7 +163,7 @@ Blueprint make_bucket(Random& random) {
 Blueprint make_drum(Random& random) {
     Blueprint b("drum");
     const double r = random.uniform(0.2, 0.3), h = random.uniform(0.55, 0.9);
-    b.feet = {b.cylinder("body", 0, 0, 0, 2 * r, h)};
+    b.foot(b.cylinder("body", 0, 0, 0, 2 * r, h));
     for (const double z : {0.0, 0.33, 0.66})
         b.cylinder("hoop", 0, 0, z * h + 0.01, 2 * r + 0.02, 0.025);
     b.cylinder("cap", 0.6 * r, 0, h, 0.06, 0.02);
@@ -184,9 +179,9 @@ Blueprint make_step_ladder(Random& random) {
         const double foot = 0.02 + h * std::tan(lean);
         sides.push_back(
             b.leaning("stringer", s * w / 2, foot, 0, {0.03, 0.06, h / std::cos(lean)}, lean));
-        b.feet.push_back(sides.back());
-        b.feet.push_back(b.leaning("strut", s * w / 2, -0.02 - h * std::tan(lean), 0,
-                                   {0.025, 0.025, h / std::cos(lean)}, -lean));
+        b.foot(sides.back());
+        b.foot(b.leaning("strut", s * w / 2, -0.02 - h * std::tan(lean), 0,
+                         {0.025, 0.025, h / std::cos(lean)}, -lean));
     }
     const int steps = std::max(2, static_cast<int>(h / 0.25));
     for (int k = 1; k <= steps; ++k) {
@@ -201,7 +196,7 @@ Blueprint make_gondola(Random& random) {
     Blueprint b("shelf");
     const double w = random.uniform(0.9, 2.2), d = random.uniform(0.5, 0.9),
                  h = random.uniform(1.1, 1.7);
-    b.feet = {b.box("base", 0, 0, 0, {w, d, 0.12})};
+    b.foot(b.box("base", 0, 0, 0, {w, d, 0.12}));
     b.box("wall", 0, 0, 0.12, {w, 0.03, h - 0.12});
     for (const double s : {-1.0, 1.0})
         b.box("end", s * (w / 2 - 0.01), 0, 0.12, {0.02, 0.5 * d, h - 0.12});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
+#include <initializer_list>
 #include <vector>
 
 #include "lab/furniture/blueprint.h"
@@ -10,6 +12,31 @@
 namespace topple::scenes {
 
 using Stack = std::vector<Blueprint>;  // things on one another, lowest first
+
+inline double stack_height(const Stack& stack) {
+    double high = 0;
+    for (const Blueprint& b : stack) high += b.height();
+    return high;
+}
+
+// Makes what stands on a surface with this free height.
+struct ItemMake : std::function<Stack(Random&, double)> {
+    ItemMake(Stack (*make)(Random&, double)) : function(make) {}
+    ItemMake(Stack (*make)(Random&)) : function([make](Random& r, double) { return make(r); }) {}
+    ItemMake(Blueprint (*make)(Random&))
+        : function([make](Random& r, double) { return Stack{make(r)}; }) {}
+};
+
+// The first of a dozen, each by one of `makes`, that is lower than `clearance`; empty where none
+// is.
+inline Stack any_that_fits(Random& random, double clearance,
+                           std::initializer_list<ItemMake> makes) {
+    for (int attempt = 0; attempt < 12; ++attempt) {
+        const Stack stack = makes.begin()[random.index(makes.size())](random, clearance);
+        if (!stack.empty() && stack_height(stack) < clearance) return stack;
+    }
+    return {};
+}
 
 // A cabinet of the blueprint `b` with its back at y: doors or drawers with gaps, handles; or open,
 // with a back, shelves, and perhaps a door ajar. Returns its top.

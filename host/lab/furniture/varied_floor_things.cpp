@@ -13,9 +13,9 @@ using std::numbers::pi;
 
 int make_pot(Blueprint& b, double r, double h) {
     // A rim that stands out a little.
-    const int pot = b.revolved(
-        "pot", 0, 0, 0, solid_within({{0.72 * r, 0}, {0.95 * r, 0.85 * h}, {r, 0.86 * h}, {r, h}}));
-    b.feet = {pot};
+    const int pot = b.foot(
+        b.revolved("pot", 0, 0, 0,
+                   solid_within({{0.72 * r, 0}, {0.95 * r, 0.85 * h}, {r, 0.86 * h}, {r, h}})));
     return pot;
 }
 
@@ -29,10 +29,8 @@ Blueprint make_topiary(Random& random) {
     double z = h, ball = random.uniform(0.28, 0.4);
     for (int k = random.integer(1, 2); k > 0; --k) {
         const double stem = random.uniform(0.12, 0.35);
-        const int trunk = b.cylinder("trunk", 0, 0, z, 0.035, stem);
-        const int crown = b.sphere("crown", 0, 0, z + stem, ball);
-        b.join(below, trunk);
-        b.join(trunk, crown);
+        const int trunk = b.join(below, b.cylinder("trunk", 0, 0, z, 0.035, stem));
+        const int crown = b.join(trunk, b.sphere("crown", 0, 0, z + stem, ball));
         below = crown;
         z += stem + ball;
         ball *= random.uniform(0.6, 0.85);
@@ -51,11 +49,10 @@ Blueprint make_leafy_plant(Random& random, double scale) {
     for (int k = 0; k < leaves; ++k) {
         // A leaning box goes towards -y of its own.
         const double yaw = first + 2 * pi * k / leaves;
-        const int leaf = b.leaning("leaf", circle * std::sin(yaw), -circle * std::cos(yaw), h,
-                                   {std::min(width, 0.09 * scale + 0.03), 0.006 + 0.004 * scale,
-                                    scale * random.uniform(0.35, 0.7)},
-                                   random.uniform(0.08, 0.45), yaw);
-        b.join(pot, leaf);
+        b.join(pot, b.leaning("leaf", circle * std::sin(yaw), -circle * std::cos(yaw), h,
+                              {std::min(width, 0.09 * scale + 0.03), 0.006 + 0.004 * scale,
+                               scale * random.uniform(0.35, 0.7)},
+                              random.uniform(0.08, 0.45), yaw));
     }
     return b;
 }
@@ -64,8 +61,7 @@ Blueprint make_leafy_plant(Random& random, double scale) {
 Blueprint make_arc_lamp(Random& random) {
     Blueprint b("arc lamp");
     const double t = 0.07;  // heavy enough for what hangs out over its edge
-    const int base = b.cylinder("base", 0, 0, 0, random.uniform(0.38, 0.44), t);
-    b.feet = {base};
+    const int base = b.foot(b.cylinder("base", 0, 0, 0, random.uniform(0.38, 0.44), t));
     b.arm(base, {0, -0.08, t},
           {{random.uniform(0.9, 1.15), random.uniform(-0.05, 0.08)},
            {random.uniform(0.28, 0.4), random.uniform(0.5, 0.9)}},
@@ -77,17 +73,14 @@ Blueprint make_coat_stand(Random& random) {
     Blueprint b("coat stand");
     const double h = random.uniform(1.5, 1.75), d = 0.045;
     const int foot =
-        b.revolved("foot", 0, 0, 0, solid_within({{0.19, 0}, {0.19, 0.02}, {0.05, 0.05}}));
-    const int pole = b.cylinder("pole", 0, 0, 0.05, d, h);
-    b.join(foot, pole);
-    b.feet = {foot};
+        b.foot(b.revolved("foot", 0, 0, 0, solid_within({{0.19, 0}, {0.19, 0.02}, {0.05, 0.05}})));
+    const int pole = b.join(foot, b.cylinder("pole", 0, 0, 0.05, d, h));
     const int pegs = random.integer(3, 4);
     for (int k = 0; k < pegs; ++k) {
         const double yaw = 2 * pi * k / pegs, c = std::cos(yaw), s = std::sin(yaw);
         // Its end stands on the pole's side, across from its axis.
         const double z = 0.05 + h - 0.08 - 0.03 * (k % 2), from = d / 2, to = d / 2 + 0.13;
-        const int peg = b.bar("peg", {from * c, from * s, z}, {to * c, to * s, z}, 0.025);
-        b.join(pole, peg);
+        b.join(pole, b.bar("peg", {from * c, from * s, z}, {to * c, to * s, z}, 0.025));
     }
     return b;
 }
@@ -97,8 +90,7 @@ Blueprint make_barrel(Random& random) {
     const double r = random.uniform(0.16, 0.24), h = random.uniform(0.45, 0.7);
     const double belly = r * random.uniform(1.1, 1.25);
     const int body =
-        b.revolved("barrel", 0, 0, 0, solid_within(smooth_side({r, belly, belly, r}, h)));
-    b.feet = {body};
+        b.foot(b.revolved("barrel", 0, 0, 0, solid_within(smooth_side({r, belly, belly, r}, h))));
     b.surfaces.push_back({body, 0, 0, 0.65 * r, 0.65 * r, 0.4, "barrel"});
     return b;
 }
@@ -110,7 +102,7 @@ Blueprint make_open_bin(Random& random) {
     const double top = r * random.uniform(1.05, 1.4);
     const Side side =
         random.chance(0.5) ? Side{{r, 0}, {top, h}} : smooth_side({r, 1.15 * top, top}, h);
-    b.feet = {b.revolved("bin", 0, 0, 0, vessel_within(side, random.uniform(0.008, 0.014), 0.015))};
+    b.foot(b.revolved("bin", 0, 0, 0, vessel_within(side, random.uniform(0.008, 0.014), 0.015)));
     return b;
 }
 
@@ -119,7 +111,7 @@ Blueprint make_bag(Random& random) {
     Blueprint b("bag");
     const Vec3 size{random.uniform(0.35, 0.55), random.uniform(0.18, 0.28),
                     random.uniform(0.25, 0.5)};
-    b.feet = {b.rounded("bag", 0, 0, 0, size, random.uniform(0.2, 0.42) * size[1])};
+    b.foot(b.rounded("bag", 0, 0, 0, size, random.uniform(0.2, 0.42) * size[1]));
     return b;
 }
 
@@ -129,9 +121,7 @@ Blueprint make_dumbbell(Random& random) {
                  bar = random.uniform(0.12, 0.16), thick = 0.035;
     const int grip = b.lying("grip", 0, 0, d / 2 - thick / 2, bar, thick);
     for (const double side : {-1.0, 1.0}) {
-        const int end = b.lying("disc", side * (bar + disc) / 2, 0, 0, disc, d);
-        b.join(grip, end);
-        b.feet.push_back(end);
+        b.foot(b.join(grip, b.lying("disc", side * (bar + disc) / 2, 0, 0, disc, d)));
     }
     return b;
 }
@@ -178,8 +168,7 @@ Blueprint make_leaning_thing(Random& random) {
             Blueprint b("ladder");
             const double length = random.uniform(1.3, 2.1), width = random.uniform(0.36, 0.46);
             for (const double side : {-1.0, 1.0}) {
-                b.feet.push_back(
-                    b.leaning("stringer", side * width / 2, 0, 0, {0.03, 0.07, length}, lean));
+                b.foot(b.leaning("stringer", side * width / 2, 0, 0, {0.03, 0.07, length}, lean));
             }
             b.leans = b.feet;
             b.rungs(b.feet[0], b.feet[1], static_cast<int>(length / 0.28), 0.035);

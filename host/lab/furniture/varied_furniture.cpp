@@ -21,13 +21,9 @@ Blueprint make_splayed_table(Random& random) {
     const double t = random.uniform(0.03, 0.055), lean = random.uniform(0.08, 0.2);
     const int top = b.rounded("tabletop", 0, 0, h - t, {w, d, t}, 0.45 * t);
     const double thick = random.uniform(0.04, 0.06);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-            const double x = sx * 0.36 * w, y = sy * 0.34 * d;
-            const int leg = b.leg("leg", x, y, 0, h - t, thick, lean, std::atan2(y, x));
-            b.join(top, leg);
-            b.feet.push_back(leg);
-        }
+    for (const auto [sx, sy] : corners) {
+        const double x = sx * 0.36 * w, y = sy * 0.34 * d;
+        b.foot(b.join(top, b.leg("leg", x, y, 0, h - t, thick, lean, std::atan2(y, x))));
     }
     b.stand_on(top, over_varied_table, "table", 0.03);
     return b;
@@ -38,9 +34,8 @@ Blueprint make_drum_table(Random& random) {
     Blueprint b("side table");
     const double r = random.uniform(0.2, 0.3), h = random.uniform(0.42, 0.6);
     const double waist = r * random.uniform(0.35, 0.9), top = r * random.uniform(0.9, 1.2);
-    const int body = b.revolved("body", 0, 0, 0,
-                                solid_within(smooth_side({r, 0.9 * r, waist, waist, top, top}, h)));
-    b.feet = {body};
+    const int body = b.foot(b.revolved(
+        "body", 0, 0, 0, solid_within(smooth_side({r, 0.9 * r, waist, waist, top, top}, h))));
     b.surfaces.push_back({body, 0, 0, 0.65 * top, 0.65 * top, over_varied_table, "table"});
     return b;
 }
@@ -52,20 +47,14 @@ Blueprint make_made_bed(Random& random) {
     const double leg = random.uniform(0.1, 0.22), frame = random.uniform(0.08, 0.16);
     const double soft = random.uniform(0.14, 0.22), top = leg + frame;
     const int board = b.box("frame", 0, 0, leg, {w, d, frame});
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-            const int foot =
-                b.box("foot", sx * (w / 2 - 0.05), sy * (d / 2 - 0.05), 0, {0.07, 0.07, leg});
-            b.join(board, foot);
-            b.feet.push_back(foot);
-        }
+    for (const auto [sx, sy] : corners) {
+        b.foot(b.join(
+            board, b.box("foot", sx * (w / 2 - 0.05), sy * (d / 2 - 0.05), 0, {0.07, 0.07, leg})));
     }
-    const int mattress = b.rounded("mattress", 0, 0, top, {w - 0.05, d - 0.05, soft}, 0.3 * soft);
-    const int head =
-        b.box("headboard", 0, -d / 2 - 0.02, 0, {w + 0.04, 0.04, top + random.uniform(0.45, 0.7)});
-    b.join(board, mattress);
-    b.join(board, head);
-    b.feet.push_back(head);
+    const int mattress =
+        b.join(board, b.rounded("mattress", 0, 0, top, {w - 0.05, d - 0.05, soft}, 0.3 * soft));
+    b.foot(b.join(board, b.box("headboard", 0, -d / 2 - 0.02, 0,
+                               {w + 0.04, 0.04, top + random.uniform(0.45, 0.7)})));
     b.surfaces.push_back({mattress, 0, -d / 2 + 0.32, w / 2 - 0.1, 0.22, 0.4, "bed"});
     b.surfaces.push_back({mattress, 0, 0.3, w / 2 - 0.1, 0.4, 0.4, "bed"});
     return b;
@@ -77,26 +66,19 @@ Blueprint make_loft_bed(Random& random) {
     const double w = random.uniform(1.9, 2.05), d = random.uniform(0.85, 1.0);
     const double under = random.uniform(1.3, 1.55), t = 0.05, post = 0.07;
     const int slab = b.box("slab", 0, 0, under, {w, d, t});
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-            const int p =
-                b.box("post", sx * (w - post) / 2, sy * (d - post) / 2, 0, {post, post, under});
-            b.join(slab, p);
-            b.feet.push_back(p);
-        }
+    for (const auto [sx, sy] : corners) {
+        b.foot(b.join(
+            slab, b.box("post", sx * (w - post) / 2, sy * (d - post) / 2, 0, {post, post, under})));
     }
-    const int mattress = b.rounded("mattress", 0, -0.08, under + t, {w - 0.1, d - 0.2, 0.14}, 0.04);
-    b.join(slab, mattress);
+    b.join(slab, b.rounded("mattress", 0, -0.08, under + t, {w - 0.1, d - 0.2, 0.14}, 0.04));
     // A stringer's back touches the slab's upper front edge, a thickness below its own end.
     const double lean = random.uniform(0.18, 0.26), width = 0.4, thick = 0.03, deep = 0.07;
     const double x = random.chance(0.5) ? -0.25 * w : 0.25 * w;
     const double foot_y = d / 2 + (under + t) * std::tan(lean);
     const double length = (under + t + 0.04) / std::cos(lean);
     for (const double sx : {-1.0, 1.0}) {
-        const int side = b.leaning("stringer", x + sx * (width - thick) / 2, foot_y, 0,
-                                   {thick, deep, length}, lean);
-        b.join(slab, side);
-        b.feet.push_back(side);
+        b.foot(b.join(slab, b.leaning("stringer", x + sx * (width - thick) / 2, foot_y, 0,
+                                      {thick, deep, length}, lean)));
     }
     const int left = b.feet[b.feet.size() - 2], right = b.feet.back();
     b.rungs(left, right, static_cast<int>(length / 0.28), 0.035);
@@ -107,10 +89,8 @@ Blueprint make_wardrobe(Random& random) {
     Blueprint b("wardrobe");
     const double w = random.uniform(0.8, 1.3), d = random.uniform(0.5, 0.62);
     const double h = random.uniform(1.6, 2.05), plinth = 0.08, t = 0.022;
-    const int foot = b.box("plinth", 0, -0.02, 0, {w - 0.04, d - 0.08, plinth});
-    const int body = b.box("body", 0, 0, plinth, {w, d, h - plinth});
-    b.join(foot, body);
-    b.feet = {foot};
+    const int foot = b.foot(b.box("plinth", 0, -0.02, 0, {w - 0.04, d - 0.08, plinth}));
+    const int body = b.join(foot, b.box("body", 0, 0, plinth, {w, d, h - plinth}));
     // Doors hang on the outer edges of the front; one may be ajar.
     const int ajar = random.integer(0, 2);
     for (int k = 0; k < 2; ++k) {
@@ -119,9 +99,8 @@ Blueprint make_wardrobe(Random& random) {
         // The door's middle seen from its hinge, before it opens.
         const Pose hinge{side * w / 2, d / 2, 0, -side * open};
         const Vec3 middle = moved(hinge, Vec3{-side * width / 2, t / 2, 0});
-        const int door = b.box("door", middle[0], middle[1], plinth + 0.02,
-                               {width, t, h - plinth - 0.04}, -side * open);
-        b.join(body, door);
+        b.join(body, b.box("door", middle[0], middle[1], plinth + 0.02,
+                           {width, t, h - plinth - 0.04}, -side * open));
     }
     b.surfaces.push_back({body, 0, 0, w / 2 - 0.02, d / 2 - 0.03, 0.3, "wardrobe"});
     return b;
@@ -162,8 +141,8 @@ Blueprint make_podium(Random& random) {
     const double w = random.uniform(1.6, 2.3), d = random.uniform(1.0, 1.4),
                  h = random.uniform(0.24, 0.42), run = 0.28;
     const int floor = b.box("platform", 0, 0, 0, {w, d, h});
-    const int step = b.box("step", random.uniform(-0.3, 0.3), (d + run) / 2, 0, {0.7, run, h / 2});
-    b.join(floor, step);
+    const int step = b.join(
+        floor, b.box("step", random.uniform(-0.3, 0.3), (d + run) / 2, 0, {0.7, run, h / 2}));
     b.feet = {floor, step};
     b.stand_on(floor, 1.2, "podium");
     return b;
@@ -180,10 +159,9 @@ Blueprint make_stairs(Random& random) {
         const bool last = k == steps;
         const double deep = last ? landing : run;
         const double from = -length / 2 + k * run;
-        const int step = b.box(last ? "landing" : "step", side * (from + deep / 2), 0, 0,
-                               {deep, d, (k + 1) * rise});
+        const int step = b.foot(b.box(last ? "landing" : "step", side * (from + deep / 2), 0, 0,
+                                      {deep, d, (k + 1) * rise}));
         if (k > 0) b.join(step, step - 1);
-        b.feet.push_back(step);
         b.stand_on(step, last ? 0.5 : 0.25, "stairs", 0.02);
     }
     return b;

@@ -13,7 +13,7 @@ using std::numbers::pi;
 
 Blueprint turned(const char* name, const solids::Profile& profile) {
     Blueprint b(name);
-    b.feet = {b.revolved(name, 0, 0, 0, profile)};
+    b.foot(b.revolved(name, 0, 0, 0, profile));
     return b;
 }
 
@@ -62,16 +62,13 @@ Blueprint wine_glass(Random& random) {
     Blueprint b("goblet");
     const double r = random.uniform(0.035, 0.05), stem = random.uniform(0.06, 0.1);
     const int foot =
-        b.revolved("foot", 0, 0, 0, solid_within({{r, 0}, {r, 0.006}, {0.3 * r, 0.015}}));
-    const int bar = b.cylinder("stem", 0, 0, 0.015, 0.014, stem);
-    const int cup = b.revolved(
-        "bowl", 0, 0, 0.015 + stem,
-        vessel_within(
-            joined({{0.3 * r, 0}}, quarter(0.3 * r, 0, 0.8 * r, random.uniform(0.06, 0.1), true)),
-            0.005, 0.01));
-    b.join(foot, bar);
-    b.join(bar, cup);
-    b.feet = {foot};
+        b.foot(b.revolved("foot", 0, 0, 0, solid_within({{r, 0}, {r, 0.006}, {0.3 * r, 0.015}})));
+    const int bar = b.join(foot, b.cylinder("stem", 0, 0, 0.015, 0.014, stem));
+    b.join(bar, b.revolved(
+                    "bowl", 0, 0, 0.015 + stem,
+                    vessel_within(joined({{0.3 * r, 0}}, quarter(0.3 * r, 0, 0.8 * r,
+                                                                 random.uniform(0.06, 0.1), true)),
+                                  0.005, 0.01)));
     return b;
 }
 
@@ -79,11 +76,9 @@ Blueprint wine_glass(Random& random) {
 Blueprint open_laptop(Random& random) {
     Blueprint b("open laptop");
     const double w = random.uniform(0.3, 0.38), d = random.uniform(0.21, 0.26), t = 0.02;
-    const int keys = b.box("keyboard", 0, 0, 0, {w, d, t});
-    const int screen =
-        b.leaning("screen", 0, -d / 2 + 0.012, t, {w, 0.012, d}, random.uniform(0.1, 0.6));
-    b.join(keys, screen);
-    b.feet = {keys};
+    const int keys = b.foot(b.box("keyboard", 0, 0, 0, {w, d, t}));
+    b.join(keys,
+           b.leaning("screen", 0, -d / 2 + 0.012, t, {w, 0.012, d}, random.uniform(0.1, 0.6)));
     return b;
 }
 
@@ -95,8 +90,7 @@ Blueprint photo_frame(Random& random) {
     const int panel = b.leaning("panel", 0, 0, 0, {w, t, h}, lean);
     const double length = 0.55 * h;
     const double y = -length * (std::sin(prop) + std::cos(prop) * std::tan(lean));
-    const int strut = b.leaning("prop", 0, y, 0, {0.05, 0.012, length}, -prop);
-    b.join(panel, strut);
+    const int strut = b.join(panel, b.leaning("prop", 0, y, 0, {0.05, 0.012, length}, -prop));
     b.feet = {panel, strut};
     return b;
 }
@@ -104,9 +98,8 @@ Blueprint photo_frame(Random& random) {
 Blueprint arm_lamp(Random& random) {
     Blueprint b("arm lamp");
     const double r = 0.1, t = 0.04;
-    const int base =
-        b.revolved("base", 0, 0, 0, solid_within(joined({{r, 0}}, quarter(r, 0, -0.06, t, false))));
-    b.feet = {base};
+    const int base = b.foot(b.revolved(
+        "base", 0, 0, 0, solid_within(joined({{r, 0}}, quarter(r, 0, -0.06, t, false)))));
     b.arm(base, {0, 0, t},
           {{random.uniform(0.16, 0.26), random.uniform(-0.5, -0.1)},
            {random.uniform(0.12, 0.22), random.uniform(0.4, 0.9)}},
@@ -119,14 +112,12 @@ Blueprint tilted_monitor(Random& random) {
     Blueprint b("tilted monitor");
     const double w = random.uniform(0.45, 0.62), h = 0.6 * w, lean = random.uniform(0.08, 0.3);
     const double low = random.uniform(0.06, 0.12), top = low + 0.55 * h, neck = 0.04;
-    const int base = b.rounded("base", 0, 0, 0, {random.uniform(0.2, 0.28), 0.19, 0.024}, 0.008);
-    const int stem = b.box("neck", 0, -0.04, 0.024, {0.08, neck, top - 0.024});
+    const int base =
+        b.foot(b.rounded("base", 0, 0, 0, {random.uniform(0.2, 0.28), 0.19, 0.024}, 0.008));
+    const int stem = b.join(base, b.box("neck", 0, -0.04, 0.024, {0.08, neck, top - 0.024}));
     const double edge = -0.04 + neck / 2;
-    const int panel =
-        b.leaning("panel", 0, edge + (top - low) * std::tan(lean), low, {w, 0.035, h}, lean);
-    b.join(base, stem);
-    b.join(stem, panel);
-    b.feet = {base};
+    b.join(stem,
+           b.leaning("panel", 0, edge + (top - low) * std::tan(lean), low, {w, 0.035, h}, lean));
     return b;
 }
 
@@ -134,7 +125,7 @@ Blueprint rounded_device(Random& random) {
     Blueprint b(random.chance(0.5) ? "toaster" : "speaker");
     const Vec3 size{random.uniform(0.12, 0.3), random.uniform(0.12, 0.2),
                     random.uniform(0.14, 0.26)};
-    b.feet = {b.rounded("body", 0, 0, 0, size, random.uniform(0.015, 0.05))};
+    b.foot(b.rounded("body", 0, 0, 0, size, random.uniform(0.015, 0.05)));
     return b;
 }
 
@@ -142,15 +133,10 @@ Blueprint toy_truck(Random& random) {
     Blueprint b("toy truck");
     const double w = random.uniform(0.08, 0.12), l = random.uniform(0.2, 0.3), wheel = 0.06;
     const int chassis = b.box("chassis", 0, 0, 0.02, {w, l, 0.045});
-    const int cab = b.rounded("cab", 0, 0.3 * l, 0.065, {w - 0.01, 0.35 * l, 0.08}, 0.015);
-    b.join(chassis, cab);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-            const int round =
-                b.lying("wheel", sx * (w / 2 + 0.0125), sy * 0.3 * l, 0, 0.025, wheel);
-            b.join(chassis, round);
-            b.feet.push_back(round);
-        }
+    b.join(chassis, b.rounded("cab", 0, 0.3 * l, 0.065, {w - 0.01, 0.35 * l, 0.08}, 0.015));
+    for (const auto [sx, sy] : corners) {
+        b.foot(b.join(chassis,
+                      b.lying("wheel", sx * (w / 2 + 0.0125), sy * 0.3 * l, 0, 0.025, wheel)));
     }
     return b;
 }
@@ -163,7 +149,7 @@ Group book_row(Random& random) {
     for (int k = 0; k < count; ++k) {
         Blueprint b("upright book");
         const double t = random.uniform(0.02, 0.05), d = random.uniform(0.13, 0.19);
-        b.feet = {b.box("book", 0, 0, 0, {t, d, random.uniform(0.18, 0.27)})};
+        b.foot(b.box("book", 0, 0, 0, {t, d, random.uniform(0.18, 0.27)}));
         row.push_back({std::move(b), {x + t / 2, random.uniform(-0.02, 0.02), 0, 0}});
         x += t + random.uniform(0.001, 0.004);
     }
@@ -172,54 +158,27 @@ Group book_row(Random& random) {
 }
 
 Group any_varied_item(Random& random) {
-    const auto one = [](Blueprint b) { return Group{{std::move(b), {}}}; };
-    switch (random.integer(0, 19)) {
+    constexpr auto plant = [](Random& r) { return make_leafy_plant(r, 0.5); };
+    constexpr std::array<BlueprintMake, 16> single{
+        glass_bottle,   glass_bottle,   bowl,       bowl,        mug,         plate,
+        amphora,        figurine,       wine_glass, open_laptop, photo_frame, arm_lamp,
+        tilted_monitor, rounded_device, toy_truck,  plant};
+    const std::size_t which = random.index(single.size() + 4);
+    if (which < single.size()) return {{single[which](random), {}}};
+    switch (which - single.size()) {
         case 0:
-        case 1:
-            return one(glass_bottle(random));
-        case 2:
-        case 3:
-            return one(bowl(random));
-        case 4:
-            return one(mug(random));
-        case 5:
-            return one(plate(random));
-        case 6:
-            return one(amphora(random));
-        case 7:
-            return one(figurine(random));
-        case 8:
-            return one(wine_glass(random));
-        case 9:
-            return one(open_laptop(random));
-        case 10:
-            return one(photo_frame(random));
-        case 11:
-            return one(arm_lamp(random));
-        case 12:
-            return one(tilted_monitor(random));
-        case 13:
-            return one(rounded_device(random));
-        case 14:
-            return one(toy_truck(random));
-        case 15:
-            return one(make_leafy_plant(random, 0.5));
-        case 16:
             return book_row(random);
-        case 17:
+        case 1:
             return make_pile(random, {0.26, 0.19, 0.05}, random.integer(3, 6));  // books
-        case 18:
+        case 2:
             return make_pile(random, {0.2, 0.17, 0.12}, random.integer(2, 3));  // boxes
-        default: {
-            Group group;
-            for (Blueprint& b : make_item(random, 1, 1)) {
-                const int on = static_cast<int>(group.size()) - 1;
-                const Pose pose{0, 0, height(group), random.uniform(-0.08, 0.08)};
-                group.push_back({std::move(b), pose, on});
-            }
-            return group;
-        }
     }
+    Group group;
+    for (Blueprint& b : make_item(random, 1, 1)) {
+        const int on = static_cast<int>(group.size()) - 1;
+        group.push_back({std::move(b), {0, 0, height(group), random.uniform(-0.08, 0.08)}, on});
+    }
+    return group;
 }
 
 }  // namespace
@@ -257,8 +216,8 @@ Group make_varied_item(Random& random, double most_height, double radius) {
 Group make_pillow(Random& random) {
     Blueprint b("pillow");
     const double t = random.uniform(0.1, 0.16);
-    b.feet = {b.rounded("pillow", 0, 0, 0, {random.uniform(0.4, 0.6), random.uniform(0.3, 0.38), t},
-                        0.48 * t)};
+    b.foot(b.rounded("pillow", 0, 0, 0, {random.uniform(0.4, 0.6), random.uniform(0.3, 0.38), t},
+                     0.48 * t));
     return {{std::move(b), {}}};
 }
 
@@ -270,7 +229,7 @@ Group make_pile(Random& random, const Vec3& lowest_size, int count) {
         Blueprint b("piled box");
         const Vec3 one{size[0] * random.uniform(0.8, 1.1), size[1] * random.uniform(0.8, 1.1),
                        size[2] * random.uniform(0.6, 1.3)};
-        b.feet = {b.box("box", 0, 0, 0, one)};
+        b.foot(b.box("box", 0, 0, 0, one));
         // All that is above a box has its center within a tenth of the sizes from the pile's axis.
         const Pose pose{k == 0 ? 0 : random.uniform(-0.1, 0.1) * size[0],
                         k == 0 ? 0 : random.uniform(-0.1, 0.1) * size[1], z,

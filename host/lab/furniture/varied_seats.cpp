@@ -15,10 +15,8 @@ void splayed_legs(Blueprint& b, Random& random, int top, const std::vector<Vec3>
                   double height, double diameter) {
     const double lean = random.uniform(0.1, 0.26);
     for (const Vec3& end : upper_ends) {
-        const int leg =
-            b.leg("leg", end[0], end[1], 0, height, diameter, lean, std::atan2(end[1], end[0]));
-        b.join(top, leg);
-        b.feet.push_back(leg);
+        b.foot(b.join(top, b.leg("leg", end[0], end[1], 0, height, diameter, lean,
+                                 std::atan2(end[1], end[0]))));
     }
 }
 
@@ -61,10 +59,9 @@ Blueprint make_splayed_chair(Random& random) {
     splayed_legs(b, random, seat, on_rectangle(0.36 * w, 0.34 * d), h - t,
                  random.uniform(0.03, 0.042));
     // The lower edge of the leaning back stands on the flat of the seat.
-    const int back = b.leaning("back", 0, -d / 2 + 0.06, h,
-                               {w - 0.04, random.uniform(0.02, 0.035), random.uniform(0.36, 0.5)},
-                               random.uniform(0.1, 0.3));
-    b.join(seat, back);
+    b.join(seat, b.leaning("back", 0, -d / 2 + 0.06, h,
+                           {w - 0.04, random.uniform(0.02, 0.035), random.uniform(0.36, 0.5)},
+                           random.uniform(0.1, 0.3)));
     b.surfaces.push_back({seat, 0, 0.05, w / 2 - 0.05, d / 2 - 0.11, 0.4, "seat"});
     return b;
 }
@@ -76,21 +73,16 @@ Blueprint make_swivel_chair(Random& random) {
     const double h = random.uniform(0.44, 0.52), t = random.uniform(0.06, 0.09);
     const double w = random.uniform(0.44, 0.52), d = random.uniform(0.42, 0.48);
     const int column = b.cylinder("column", 0, 0, 0.02, hub, h - t - 0.02);
-    const int seat = b.rounded("seat", 0, 0, h - t, {w, d, t}, 0.45 * t);
-    b.join(column, seat);
+    const int seat = b.join(column, b.rounded("seat", 0, 0, h - t, {w, d, t}, 0.45 * t));
     for (int k = 0; k < 5; ++k) {
         const double angle = 2 * pi * k / 5 + 0.3, from = hub / 2 + reach / 2;
-        const int foot = b.box("foot", from * std::cos(angle), from * std::sin(angle), 0,
-                               {reach, 0.04, low}, angle);
-        b.join(column, foot);
-        b.feet.push_back(foot);
+        b.foot(b.join(column, b.box("foot", from * std::cos(angle), from * std::sin(angle), 0,
+                                    {reach, 0.04, low}, angle)));
     }
     const double up = random.uniform(0.1, 0.18), back_h = random.uniform(0.36, 0.5);
-    const int stem = b.box("stem", 0, -d / 2 + 0.07, h, {0.06, 0.03, up + 0.1});
-    const int back =
-        b.rounded("back", 0, -d / 2 + 0.085 + 0.035, h + up, {w - 0.06, 0.07, back_h}, 0.03);
-    b.join(seat, stem);
-    b.join(stem, back);
+    const int stem = b.join(seat, b.box("stem", 0, -d / 2 + 0.07, h, {0.06, 0.03, up + 0.1}));
+    b.join(stem,
+           b.rounded("back", 0, -d / 2 + 0.085 + 0.035, h + up, {w - 0.06, 0.07, back_h}, 0.03));
     return b;
 }
 
@@ -102,31 +94,24 @@ Blueprint make_rounded_sofa(Random& random) {
     const double back = random.uniform(0.18, 0.26), leg = random.uniform(0.06, 0.14);
     const double base = random.uniform(0.16, 0.22), cushion = random.uniform(0.14, 0.2);
     const int frame = b.rounded("frame", 0, 0, leg, {w, d, base}, 0.03);
-    for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-            const int foot =
-                b.cylinder("foot", sx * (w / 2 - 0.1), sy * (d / 2 - 0.1), 0, 0.05, leg);
-            b.join(frame, foot);
-            b.feet.push_back(foot);
-        }
+    for (const auto [sx, sy] : corners) {
+        b.foot(b.join(frame,
+                      b.cylinder("foot", sx * (w / 2 - 0.1), sy * (d / 2 - 0.1), 0, 0.05, leg)));
     }
     const double top = leg + base, inner = w - 2 * arm;
-    const int rest = b.rounded("back", 0, -d / 2 + back / 2 + 0.01, top,
-                               {inner, back, cushion + random.uniform(0.28, 0.4)}, 0.4 * back);
-    b.join(frame, rest);
+    b.join(frame, b.rounded("back", 0, -d / 2 + back / 2 + 0.01, top,
+                            {inner, back, cushion + random.uniform(0.28, 0.4)}, 0.4 * back));
     for (const double sx : {-1.0, 1.0}) {
-        const int side =
-            b.rounded("arm", sx * (w - arm) / 2, 0, top,
-                      {arm - 0.006, d - 0.08, cushion + random.uniform(0.08, 0.2)}, 0.4 * arm);
-        b.join(frame, side);
+        b.join(frame,
+               b.rounded("arm", sx * (w - arm) / 2, 0, top,
+                         {arm - 0.006, d - 0.08, cushion + random.uniform(0.08, 0.2)}, 0.4 * arm));
     }
     const int seats = single ? 1 : random.integer(2, 3);
     const double each = inner / seats, depth = d - back - 0.06;
     for (int k = 0; k < seats; ++k) {
         const double x = -inner / 2 + (k + 0.5) * each, y = -d / 2 + back + 0.03 + depth / 2;
-        const int seat =
-            b.rounded("cushion", x, y, top, {each - 0.01, depth, cushion}, 0.35 * cushion);
-        b.join(frame, seat);
+        const int seat = b.join(
+            frame, b.rounded("cushion", x, y, top, {each - 0.01, depth, cushion}, 0.35 * cushion));
         b.surfaces.push_back({seat, x, y, each / 2 - 0.09, depth / 2 - 0.09, 0.4, "sofa"});
     }
     return b;
@@ -137,20 +122,15 @@ Blueprint make_bolster_armchair(Random& random) {
     Blueprint b("armchair");
     const double inner = random.uniform(0.5, 0.62), d = random.uniform(0.7, 0.82);
     const double h = random.uniform(0.36, 0.44), board = 0.06, roll = random.uniform(0.13, 0.18);
-    const int seat = b.box("seat", 0, 0, 0, {inner, d, h});
-    const int back = b.leaning(
-        "back", 0, -d / 2 + 0.02, h,
-        {inner - (roll - board) - 0.02, random.uniform(0.12, 0.17), random.uniform(0.42, 0.55)},
-        random.uniform(0.08, 0.2));
-    b.join(seat, back);
-    b.feet = {seat};
+    const int seat = b.foot(b.box("seat", 0, 0, 0, {inner, d, h}));
+    b.join(seat, b.leaning("back", 0, -d / 2 + 0.02, h,
+                           {inner - (roll - board) - 0.02, random.uniform(0.12, 0.17),
+                            random.uniform(0.42, 0.55)},
+                           random.uniform(0.08, 0.2)));
     for (const double sx : {-1.0, 1.0}) {
         const double x = sx * (inner + board) / 2, up = h + random.uniform(0.1, 0.14);
-        const int side = b.box("side", x, 0.05, 0, {board, d - 0.1, up});
-        const int bolster = b.lying("roll", x, 0.05, up, d - 0.12, roll, pi / 2);
-        b.join(seat, side);
-        b.join(side, bolster);
-        b.feet.push_back(side);
+        const int side = b.foot(b.join(seat, b.box("side", x, 0.05, 0, {board, d - 0.1, up})));
+        b.join(side, b.lying("roll", x, 0.05, up, d - 0.12, roll, pi / 2));
     }
     b.surfaces.push_back({seat, 0, 0.12, inner / 2 - roll / 2, d / 2 - 0.16, 0.4, "sofa"});
     return b;
@@ -160,11 +140,10 @@ Blueprint make_pouf(Random& random) {
     Blueprint b("pouf");
     const double r = random.uniform(0.2, 0.3), h = random.uniform(0.3, 0.42);
     const double foot = random.uniform(0.55, 0.75) * r;
-    const int body = b.revolved(
+    const int body = b.foot(b.revolved(
         "pouf", 0, 0, 0,
         solid_within(joined({{foot, 0}}, joined(quarter(foot, 0, r - foot, h / 2, true),
-                                                quarter(r, h / 2, foot - r, h / 2, false)))));
-    b.feet = {body};
+                                                quarter(r, h / 2, foot - r, h / 2, false))))));
     b.surfaces.push_back({body, 0, 0, 0.6 * foot, 0.6 * foot, 0.3, "seat"});
     return b;
 }

@@ -29,8 +29,8 @@ Blueprint radiator(Random& random) {
                  t = random.uniform(0.05, 0.1), off = 0.05;
     const int panel = b.box("panel", 0, off + t / 2, 0, {w, t, h});
     for (const double side : {-1.0, 1.0}) {
-        const int bracket = b.box("bracket", side * 0.35 * w, off / 2, 0.08, {0.06, off, h - 0.16});
-        b.join(panel, bracket);
+        const int bracket =
+            b.join(panel, b.box("bracket", side * 0.35 * w, off / 2, 0.08, {0.06, off, h - 0.16}));
         b.wall_parts.push_back(bracket);
     }
     return b;
@@ -40,8 +40,7 @@ Blueprint television(Random& random) {
     Blueprint b("television");
     const double w = random.uniform(0.8, 1.3), h = 0.57 * w, off = 0.06;
     const int bracket = b.box("bracket", 0, off / 2, 0.3 * h, {0.3 * w, off, 0.4 * h});
-    const int panel = b.box("panel", 0, off + 0.02, 0, {w, 0.04, h});
-    b.join(bracket, panel);
+    b.join(bracket, b.box("panel", 0, off + 0.02, 0, {w, 0.04, h}));
     b.wall_parts = {bracket};
     return b;
 }
@@ -67,8 +66,8 @@ Blueprint bracket_shelf(Random& random) {
     const int board = b.box("board", 0, d / 2, low, {w, d, t});
     b.wall_parts = {board};
     for (const double side : {-1.0, 1.0}) {
-        const int bracket = b.box("bracket", side * 0.35 * w, 0.6 * d / 2, 0, {0.03, 0.6 * d, low});
-        b.join(board, bracket);
+        const int bracket =
+            b.join(board, b.box("bracket", side * 0.35 * w, 0.6 * d / 2, 0, {0.03, 0.6 * d, low}));
         b.wall_parts.push_back(bracket);
     }
     b.stand_on(board, 0.35, "wall-shelf");
@@ -80,10 +79,8 @@ Blueprint wall_lamp(Random& random) {
     const double ball = random.uniform(0.16, 0.24), arm = random.uniform(0.06, 0.12), t = 0.03;
     const double z = ball / 2;
     const int plate = b.box("plate", 0, t / 2, z - 0.08, {0.1, t, 0.16});
-    const int bar = b.bar("arm", {0, t, z}, {0, t + arm, z}, 0.03);
-    const int shade = b.sphere("shade", 0, t + arm + ball / 2, 0, ball);
-    b.join(plate, bar);
-    b.join(bar, shade);
+    const int bar = b.join(plate, b.bar("arm", {0, t, z}, {0, t + arm, z}, 0.03));
+    b.join(bar, b.sphere("shade", 0, t + arm + ball / 2, 0, ball));
     b.wall_parts = {plate};
     return b;
 }
@@ -91,31 +88,28 @@ Blueprint wall_lamp(Random& random) {
 }  // namespace
 
 WallThing make_wall_thing(Random& random) {
-    switch (random.integer(0, 7)) {
-        case 0:
-            return {disc(random), 1.2, 1.7};
-        case 1:
-            return {radiator(random), 0.1, 0.2};
-        case 2:
-            return {television(random), 0.9, 1.2};
-        case 3:
-            return {coat_rack(random), 1.4, 1.7};
-        case 4:
-            return {bracket_shelf(random), 0.9, 1.4};
-        case 5:
-            return {wall_lamp(random), 1.3, 1.7};
-        default:
-            return {picture(random), 0.9, 1.5};
-    }
+    struct Habit {
+        BlueprintMake make;
+        double lowest, highest;
+    };
+    constexpr std::array<Habit, 8> habits{{{disc, 1.2, 1.7},
+                                           {radiator, 0.1, 0.2},
+                                           {television, 0.9, 1.2},
+                                           {coat_rack, 1.4, 1.7},
+                                           {bracket_shelf, 0.9, 1.4},
+                                           {wall_lamp, 1.3, 1.7},
+                                           {picture, 0.9, 1.5},
+                                           {picture, 0.9, 1.5}}};
+    const Habit& habit = habits[random.index(habits.size())];
+    return {habit.make(random), habit.lowest, habit.highest};
 }
 
 Blueprint make_hanging_lamp(Random& random) {
     Blueprint b("hanging lamp");
     const double rod = random.uniform(0.2, 0.4), shade = random.uniform(0.18, 0.28);
     const int stem = b.cylinder("rod", 0, 0, -rod, 0.025, rod);
-    const int top = b.cone("shade", 0, 0, -rod - shade, random.uniform(0.3, 0.45), shade,
-                           random.uniform(0.2, 0.7));
-    b.join(stem, top);
+    b.join(stem, b.cone("shade", 0, 0, -rod - shade, random.uniform(0.3, 0.45), shade,
+                        random.uniform(0.2, 0.7)));
     b.wall_parts = {stem};
     return b;
 }

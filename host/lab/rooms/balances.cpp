@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
-#include "lab/rooms/composer.h"
-#include "lab/rooms/plans.h"
+#include "lab/rooms/furnish.h"
 
 namespace topple::scenes {
 namespace {
@@ -26,28 +26,11 @@ class Balancer {
     Balancer(Composer& room, double scale) : room_(room), random_(room.random()), scale_(scale) {}
 
     void build_at(const Pose& pose, std::int32_t carrier) {
-        switch (random_.integer(0, 6)) {
-            case 0:
-                cap(pose, carrier);
-                break;
-            case 1:
-                lean_on_box(pose, carrier);
-                break;
-            case 2:
-                bridge(pose, carrier);
-                break;
-            case 3:
-                tower(pose, carrier);
-                break;
-            case 4:
-                row(pose, carrier);
-                break;
-            case 5:
-                dominoes(pose, carrier);
-                break;
-            default:
-                tripod(pose, carrier);
-        }
+        using Build = void (Balancer::*)(const Pose&, std::int32_t);
+        constexpr std::array<Build, 7> builds{
+            &Balancer::cap, &Balancer::lean_on_box, &Balancer::bridge, &Balancer::tower,
+            &Balancer::row, &Balancer::dominoes,    &Balancer::tripod};
+        (this->*builds[random_.index(builds.size())])(pose, carrier);
     }
 
     // Over a carrier's edge, the smaller part of it: `edge` is half of the carrier along its y.
@@ -193,13 +176,8 @@ class Balancer {
 
 }  // namespace
 
-World make_precarious(std::uint64_t seed) {
-    Composer room(seed, 209);
+void furnish_precarious(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(2.5, 5), random.uniform(2.5, 4.5), random.uniform(2.3, 2.8)};
-    shell.missing = 0.4;
-    room.build(shell);
     for (int k = random.integer(1, 3); k > 0; --k) {
         const Blueprint table =
             random.chance(0.7) ? make_work_table(random) : make_drawer_unit(random);
@@ -229,17 +207,10 @@ World make_precarious(std::uint64_t seed) {
             {random.uniform(0.4, size[0] - 0.4), random.uniform(0.4, size[1] - 0.4), 0, yaw}, 0);
     }
     for (int k = random.integer(0, 2); k > 0; --k) room.leaning(make_leaning_thing(random));
-    return std::move(room.world());
 }
 
-World make_tabletop(std::uint64_t seed) {
-    Composer room(seed, 210);
+void furnish_tabletop(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(2.4, 4), random.uniform(2.4, 4), random.uniform(2.3, 2.8)};
-    shell.missing = 0.6;
-    shell.fittings = random.chance(0.4);
-    room.build(shell);
     const bool at_wall = random.chance(0.4);
     bool stands = false;
     for (int attempt = 0; attempt < 40 && !stands; ++attempt) {
@@ -248,8 +219,8 @@ World make_tabletop(std::uint64_t seed) {
         if (one.height() < 0.5) continue;
         stands = at_wall ? room.along_wall(one) : room.anywhere(one);
     }
-    if (!stands) return std::move(room.world());
-    const std::size_t table = room.placed().size() - 1;
+    if (!stands) return;
+    const std::size_t table = room.last();
     for (int k = random.integer(0, 2); k > 0; --k)
         room.before(table, random.integer(0, 3), make_rail_chair(random));
     const Composer::Placed at = room.placed()[table];
@@ -264,7 +235,7 @@ World make_tabletop(std::uint64_t seed) {
                            at.first_part + surface.part);
         }
     }
-    room.fill(table, random.uniform(6, 26), [&](double clearance) -> Stack {
+    room.fill(table, random.uniform(6, 26), [](Random& random, double clearance) -> Stack {
         if (random.chance(0.35)) {
             Stack stack;
             const Vec3 size{random.uniform(0.06, 0.3), random.uniform(0.05, 0.24),
@@ -276,7 +247,6 @@ World make_tabletop(std::uint64_t seed) {
         return random.chance(0.5) ? make_kitchen_item(random, clearance)
                                   : make_desk_item(random, clearance);
     });
-    return std::move(room.world());
 }
 
 }  // namespace topple::scenes

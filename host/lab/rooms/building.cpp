@@ -29,7 +29,7 @@ enum Stream : std::uint64_t {
 };
 
 // The axis along a wall, and whether it is the one at the high end of the other.
-std::size_t along(std::size_t wall) {
+std::size_t axis_of(std::size_t wall) {
     return wall <= 2 ? 0 : 1;
 }
 bool is_high(std::size_t wall) {
@@ -39,7 +39,7 @@ bool is_high(std::size_t wall) {
 // A box from `from` to `to` along a wall and from `in` inside the room to `out` beyond its face.
 std::array<Vec3, 2> at_wall(std::size_t wall, const Vec3& size, std::array<double, 2> from_to,
                             double in, double out, std::array<double, 2> up) {
-    const std::size_t a = along(wall), across = 1 - a;
+    const std::size_t a = axis_of(wall), across = 1 - a;
     std::array<Vec3, 2> box{};
     box[0][a] = from_to[0];
     box[1][a] = from_to[1];
@@ -62,7 +62,7 @@ Part box_part(const char* name, const std::array<Vec3, 2>& box) {
 // Where people go from a door to the room's middle: wide before the door, then narrower.
 void add_way(const Building::Door& door, const Vec3& size,
              std::vector<std::array<Vec3, 2>>& keep_free) {
-    const std::size_t a = along(door.wall);
+    const std::size_t a = axis_of(door.wall);
     const double low = door.opening[0][a], high = door.opening[1][a], middle = (low + high) / 2;
     const std::array<double, 2> up{0, Building::door_height_m + beside_door};
     keep_free.push_back(at_wall(door.wall, size, {low - beside_door, high + beside_door},
@@ -80,11 +80,12 @@ std::vector<Part> shell(const Vec3& size, const std::vector<Building::Door>& doo
         box_part("ceiling", {Vec3{-e, -e, h}, Vec3{w + e, d + e, Building::storey_m - slab_m}})};
     for (std::size_t wall = 1; wall <= 4; ++wall) {
         // Two of the walls hold the corners.
-        const double corner = wall <= 2 ? e : 0, end = size[along(wall)] + corner;
+        const double corner = wall <= 2 ? e : 0, end = size[axis_of(wall)] + corner;
         double from = -corner;
         for (const Building::Door& door : doors) {
             if (door.wall != wall) continue;
-            const double low = door.opening[0][along(wall)], high = door.opening[1][along(wall)];
+            const double low = door.opening[0][axis_of(wall)],
+                         high = door.opening[1][axis_of(wall)];
             parts.push_back(box_part("wall", at_wall(wall, size, {from, low}, 0, e, {0, h})));
             parts.push_back(box_part(
                 "lintel", at_wall(wall, size, {low, high}, 0, e, {Building::door_height_m, h})));
@@ -130,7 +131,7 @@ std::vector<Vec3> stations(const World& world, const std::vector<Building::Door>
             all.push_back({x + side * middle[0], y + end * middle[1], scanner_height});
     }
     for (const Building::Door& door : doors) {
-        const std::size_t a = along(door.wall), across = 1 - a;
+        const std::size_t a = axis_of(door.wall), across = 1 - a;
         Vec3 station{0, 0, scanner_height};
         station[a] = (door.opening[0][a] + door.opening[1][a]) / 2;
         station[across] =
@@ -209,12 +210,12 @@ std::vector<Building::Door> Building::doors(std::size_t id, const Vec3& size) co
     for (std::size_t wall = 1; wall <= 4; ++wall) {
         Cell beyond = at;
         // Below row or column 0 the number wraps around, and no such cell is there.
-        (along(wall) == 0 ? beyond.row : beyond.column) += is_high(wall) ? 1 : std::size_t(-1);
+        (axis_of(wall) == 0 ? beyond.row : beyond.column) += is_high(wall) ? 1 : std::size_t(-1);
         Door door;
         if (!has(beyond, door.to)) continue;
         door.wall = wall;
-        Random random(options_.seed, doors_stream + 2 * std::min(id, door.to) + along(wall));
-        const double middle = size[along(wall)] * random.uniform(0.36, 0.64);
+        Random random(options_.seed, doors_stream + 2 * std::min(id, door.to) + axis_of(wall));
+        const double middle = size[axis_of(wall)] * random.uniform(0.36, 0.64);
         door.opening = at_wall(wall, size, {middle - door_width_m / 2, middle + door_width_m / 2},
                                0, half_wall, {0, door_height_m});
         all.push_back(door);

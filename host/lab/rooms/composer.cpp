@@ -11,13 +11,6 @@ namespace {
 
 using std::numbers::pi;
 
-bool boxes_overlap(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q, double margin) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        if (p[0][a] >= q[1][a] + margin || q[0][a] >= p[1][a] + margin) return false;
-    }
-    return true;
-}
-
 using Contact = std::pair<const Part*, Part>;  // what carries, and a foot on it
 
 // Whether the middle of the mass lies over what the feet touch: in each of 16 directions some
@@ -56,36 +49,21 @@ bool balanced(const Blueprint& blueprint, const Pose& pose, const std::vector<Co
 
 }  // namespace
 
-bool Composer::fits(const Blueprint& blueprint, const Pose& pose, double margin) const {
+bool Composer::fits(const Blueprint& blueprint, const Pose& pose) const {
     for (const Part& local : blueprint.parts) {
         const Part part = moved(pose, local);
         const auto box = part.bounds();
         for (const auto& free : free_) {
-            if (boxes_overlap(box, free, 0)) return false;
+            if (overlap(box, free, 0)) return false;
         }
         for (std::size_t other = 0; other < boxes_.size(); ++other) {
-            if (boxes_overlap(box, boxes_[other], margin) &&
-                gap(part, world_.parts[other], 2e-4) < margin) {
+            if (overlap(box, boxes_[other], -sunk) &&
+                gap(part, world_.parts[other], 2e-4) < -sunk) {
                 return false;
             }
         }
     }
     return true;
-}
-
-std::int32_t Composer::add(const Blueprint& blueprint, const Pose& pose, const std::string& where) {
-    const auto object = static_cast<std::int32_t>(world_.objects.size());
-    const auto first = static_cast<std::int32_t>(world_.parts.size());
-    world_.objects.push_back({blueprint.name, where, blueprint.pile});
-    for (const Part& local : blueprint.parts) {
-        Part part = moved(pose, local);
-        part.object = object;
-        boxes_.push_back(part.bounds());
-        world_.parts.push_back(std::move(part));
-    }
-    for (const auto& [a, b] : blueprint.joints) world_.fixed.emplace_back(first + a, first + b);
-    placed_.push_back({blueprint, pose, first});
-    return first;
 }
 
 bool Composer::stand(const Blueprint& blueprint, const Pose& pose,
@@ -96,7 +74,7 @@ bool Composer::stand(const Blueprint& blueprint, const Pose& pose,
         const Part part = moved(pose, blueprint.parts[static_cast<std::size_t>(foot)]);
         const auto box = part.bounds();
         for (const std::int32_t below : supporters) {
-            if (!boxes_overlap(boxes_[static_cast<std::size_t>(below)], box, 0.002)) continue;
+            if (!overlap(boxes_[static_cast<std::size_t>(below)], box, 0.002)) continue;
             carried.emplace_back(below, foot);
             contacts.emplace_back(&world_.parts[static_cast<std::size_t>(below)], part);
         }
@@ -117,20 +95,6 @@ bool Composer::fix(const Blueprint& blueprint, const Pose& pose) {
     if (!fits(blueprint, pose)) return false;
     world_.fixed.emplace_back(0, add(blueprint, pose, "wall"));
     return true;
-}
-
-Pose Composer::at_wall(int wall, double along, double off, double z, double turn) const {
-    const double w = world_.room[0], d = world_.room[1];
-    switch (wall) {
-        case 0:
-            return {along, off, z, turn};
-        case 1:
-            return {along, d - off, z, pi + turn};
-        case 2:
-            return {off, along, z, -pi / 2 + turn};
-        default:
-            return {w - off, along, z, pi / 2 + turn};
-    }
 }
 
 bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempts) {
@@ -158,7 +122,7 @@ bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempt
             if (along + high > length) continue;
         }
         if (built_in) off = 0;
-        const Pose pose = at_wall(wall, along, off - blueprint.back(), 0, turn);
+        const Pose pose = against_wall(wall, along, off - blueprint.back(), 0, turn);
         if (built_in ? fix(blueprint, pose) : stand(blueprint, pose, {0}, "floor")) return true;
     }
     return false;
@@ -175,7 +139,7 @@ std::vector<std::size_t> Composer::row(int wall, double from, double to, double 
         const double wide = box[1][0] - box[0][0];
         if (at + wide > to) break;
         const double low = mirrored ? -box[1][0] : box[0][0];
-        if (stand(one, at_wall(wall, at - low, off - one.back(), 0, 0), {0}, "floor")) {
+        if (stand(one, against_wall(wall, at - low, off - one.back(), 0, 0), {0}, "floor")) {
             found.push_back(placed_.size() - 1);
             at += wide + (random_.chance(loose) ? random_.uniform(0.003, 0.06) : 0.0002);
         } else {
@@ -185,7 +149,7 @@ std::vector<std::size_t> Composer::row(int wall, double from, double to, double 
     return found;
 }
 
-bool Composer::on_wall(const Blueprint& blueprint, double height, bool built_in) {
+bool Composer::on_wall(const Blueprint& blueprint, double height) {
     const auto box = blueprint.bounds();
     for (int attempt = 0; attempt < 25; ++attempt) {
         const int wall = any_wall();
@@ -193,15 +157,14 @@ bool Composer::on_wall(const Blueprint& blueprint, double height, bool built_in)
         const double half = std::max(box[1][0], -box[0][0]), length = wall_length(wall);
         if (2 * half > length || height + box[1][2] > world_.room[2]) continue;
         const Pose pose =
-            at_wall(wall, random_.uniform(half, length - half), -blueprint.back(), height, 0);
+            against_wall(wall, random_.uniform(half, length - half), -blueprint.back(), height, 0);
         // Only where there is wall behind: a nail's hole into it must end in a solid.
         const Vec3 nail =
             moved(pose, Vec3{0, blueprint.back() - 0.02, (box[0][2] + box[1][2]) / 2});
         const bool backed =
             std::any_of(world_.parts.begin(), world_.parts.end(),
                         [&](const Part& p) { return p.object == 0 && p.inside(nail); });
-        if (!backed || !built_in) continue;
-        if (fix(blueprint, pose)) return true;
+        if (backed && fix(blueprint, pose)) return true;
     }
     return false;
 }
@@ -321,8 +284,13 @@ void Composer::fill(std::size_t index, double per_m2, const Make& make) {
         const int count =
             static_cast<int>(expected * random_.uniform(0.3, 1.5) + random_.uniform());
         for (int k = 0; k < std::min(count, 40); ++k)
-            on_surface(index, surface, make(surface.clearance));
+            on_surface(index, surface, make(random_, surface.clearance));
     }
+}
+
+void Composer::fill_all(double per_m2, const Make& make) {
+    const std::size_t count = placed_.size();
+    for (std::size_t k = 0; k < count; ++k) fill(k, per_m2, make);
 }
 
 bool Composer::leaning(const Blueprint& blueprint) {
@@ -330,7 +298,7 @@ bool Composer::leaning(const Blueprint& blueprint) {
     for (int attempt = 0; attempt < 25; ++attempt) {
         const int wall = any_wall();
         const double along = random_.uniform(0.2, wall_length(wall) - 0.2);
-        const Pose pose = at_wall(wall, along, -blueprint.back(), 0, 0);
+        const Pose pose = against_wall(wall, along, -blueprint.back(), 0, 0);
         if (wall_part_[static_cast<std::size_t>(wall)] < 0) continue;
         if (stand(blueprint, pose, {0}, "wall")) return true;
     }

@@ -5,20 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "lab/furniture/blueprint.h"
-#include "lab/solids/pose.h"
-#include "lab/solids/scene.h"
+#include "lab/rooms/room_maker.h"
 
 // Puts a room together as rooms are: things stand flush against walls and one another, under
 // tables, in niches. Solids of different objects touch but never reach into one another by more
 // than `sunk`; those of one object may.
 namespace topple::scenes {
 
-class Composer {
+class Composer : public RoomMaker {
   public:
     static constexpr double sunk = 0.0005;  // m
 
-    Composer(std::uint64_t seed, std::uint64_t stream) : random_(seed, stream) {}
+    Composer(std::uint64_t seed, std::uint64_t stream) : RoomMaker(seed, stream) {}
 
     struct Shell {
         Vec3 size{4, 4, 2.5};  // inner, metres
@@ -31,17 +29,8 @@ class Composer {
     // Floor and walls with windows, doors, sills, skirting, niches. First of all.
     void build(const Shell& shell);
 
-    struct Placed {
-        Blueprint blueprint;
-        Pose pose;
-        std::int32_t first_part = 0;
-    };
-    const std::vector<Placed>& placed() const { return placed_; }
-    // Part of the world that is part `k` of a placed blueprint.
-    std::int32_t part_of(std::size_t placed, int k) const { return placed_[placed].first_part + k; }
-
     // Whether it keeps out of all solids there, and out of ways to doors.
-    bool fits(const Blueprint& blueprint, const Pose& pose, double margin = -sunk) const;
+    bool fits(const Blueprint& blueprint, const Pose& pose) const;
 
     // Each returns whether it found room; placed().back() is it then.
     bool stand(const Blueprint& blueprint, const Pose& pose,
@@ -55,7 +44,7 @@ class Composer {
     std::vector<std::size_t> row(int wall, double from, double to, double loose,
                                  const std::function<Blueprint()>& make);
     // Its back in the wall's plane, its origin at a height.
-    bool on_wall(const Blueprint& blueprint, double height, bool built_in = true);
+    bool on_wall(const Blueprint& blueprint, double height);
     // On the floor, anywhere.
     bool anywhere(const Blueprint& blueprint, int attempts = 40);
     // Facing a placed table's front or back (side 0, 1) or ends (2, 3), pushed in by chance.
@@ -65,26 +54,26 @@ class Composer {
     // On a surface of what was placed; by chance side by side with what stands there. Several:
     // stacked, lowest first.
     bool on_surface(std::size_t index, const Surface& surface, const std::vector<Blueprint>& stack);
-    // Things of `make(height)` on all surfaces of a placed blueprint, so many per m^2.
-    using Make = std::function<std::vector<Blueprint>(double)>;
+    // Things of `make(random, height)` on all surfaces of a placed blueprint, so many per m^2.
+    using Make = std::function<std::vector<Blueprint>(Random&, double)>;
     void fill(std::size_t index, double per_m2, const Make& make);
+    void fill_all(double per_m2, const Make& make);
+    // The last that was placed, where something was.
+    void fill_if(bool placed, double per_m2, const Make& make) {
+        if (placed) fill(last(), per_m2, make);
+    }
     // Leaning against a wall, without being fixed.
     bool leaning(const Blueprint& blueprint);
 
-    // The pose with the back along wall 0..3 (low y, high y, low x, high x); `along` in metres.
-    Pose at_wall(int wall, double along, double off, double z, double turn) const;
+    using RoomMaker::against_wall;
     double wall_length(int wall) const { return world_.room[wall < 2 ? 0 : 1]; }
     const std::vector<int>& walls() const { return walls_; }  // that stand
     int any_wall() { return walls_[static_cast<std::size_t>(random_.integer(0, last_wall()))]; }
     double skirting() const { return skirting_; }  // m that it keeps furniture off the walls
     // Solids of the building itself.
-    std::int32_t add_building(Part part);
+    std::int32_t add_building(Part part) { return add_own(std::move(part)); }
     std::int32_t add_building_box(const char* name, double x, double y, double bottom,
                                   const Vec3& size);
-
-    void keep_free(const std::array<Vec3, 2>& box) { free_.push_back(box); }
-    Random& random() { return random_; }
-    World& world() { return world_; }
 
   private:
     struct Opening {
@@ -98,13 +87,8 @@ class Composer {
     void fill_opening(int wall, const Opening& opening);
     void add_fittings();
     void hang_curtain(int wall, const Opening& opening);
-    std::int32_t add(const Blueprint& blueprint, const Pose& pose, const std::string& where);
 
-    World world_;
-    Random random_;
-    std::vector<Placed> placed_;
-    std::vector<std::array<Vec3, 2>> boxes_;  // of parts
-    std::vector<std::array<Vec3, 2>> free_;
+    std::vector<Bounds> free_;
     std::vector<int> walls_;
     std::array<std::int32_t, 4> wall_part_{-1, -1, -1, -1};
     double skirting_ = 0, thickness_ = 0.15;

@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "lab/furniture/things.h"
-#include "lab/rooms/composer.h"
+#include "lab/rooms/furnish.h"
 #include "lab/rooms/goods.h"
-#include "lab/rooms/plans.h"
 
 namespace topple::scenes {
 namespace {
@@ -32,7 +31,7 @@ void rows_of_pallets(Composer& room) {
         if (random.chance(0.15)) continue;
         const Pose pose = moved(corner, Pose{(k % nx) * (w + between), (k / nx) * (d + between)});
         if (room.stand(pallet, pose, {0}, "floor") && random.chance(0.85))
-            load_pallet(room, room.placed().size() - 1);
+            load_pallet(room, room.last());
     }
 }
 
@@ -62,15 +61,8 @@ void stack_cartons(Composer& room) {
 
 }  // namespace
 
-World make_depot(std::uint64_t seed) {
-    Composer room(seed, 215);
+void furnish_depot(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(6, 14), random.uniform(5, 11), random.uniform(3, 7)};
-    shell.missing = 0.6;
-    shell.ceiling = 0;
-    shell.fittings = random.chance(0.5);
-    room.build(shell);
     const Vec3& size = room.world().room;
     for (int k = random.integer(0, 4); k > 0; --k) {
         const double thick = random.uniform(0.2, 0.5);
@@ -78,21 +70,17 @@ World make_depot(std::uint64_t seed) {
                               random.uniform(0.2, 0.8) * size[1], 0, {thick, thick, size[2]});
     }
     const double goods = random.uniform(1, 4);
-    const auto item = [&](double c) { return make_store_item(random, c); };
-    for (int k = random.integer(0, 4); k > 0; --k) {
-        if (room.along_wall(make_rack(random, shell.size[2] - 0.3)))
-            room.fill(room.placed().size() - 1, goods, item);
-    }
+    for (int k = random.integer(0, 4); k > 0; --k)
+        room.fill_if(room.along_wall(make_rack(random, room.world().room[2] - 0.3)), goods,
+                     make_store_item);
     if (random.chance(0.4))
         aisles(room, random.uniform(1.4, 2.6), pallet_rack, goods, make_store_item);
     for (int k = random.integer(1, 3); k > 0; --k) rows_of_pallets(room);
     for (int k = random.integer(1, 6); k > 0; --k) stack_cartons(room);
     for (int k = random.integer(0, 3); k > 0; --k) room.anywhere(make_drum(random));
     if (random.chance(0.6)) room.anywhere(make_pallet_jack(random));
-    if (random.chance(0.5) && room.anywhere(make_trolley(random)))
-        room.fill(room.placed().size() - 1, 4, item);
+    if (random.chance(0.5)) room.fill_if(room.anywhere(make_trolley(random)), 4, make_store_item);
     for (int k = random.integer(0, 4); k > 0; --k) room.anywhere(make_carton(random, 0.8));
-    return std::move(room.world());
 }
 
 }  // namespace topple::scenes

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "lab/rooms/room_plans.h"
+#include "lab/rooms/furnisher.h"
 #include "topple/error.h"
 
 namespace topple::scenes {

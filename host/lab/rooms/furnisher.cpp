@@ -16,14 +16,6 @@ constexpr double margin = 0.012;     // between objects that don't touch
 constexpr double head_height = 2.0;  // what hangs higher may reach over the free middle
 constexpr std::int32_t floor_part = 0;
 
-// Whether two boxes have a volume in common.
-bool overlap(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        if (p[0][a] >= q[1][a] || q[0][a] >= p[1][a]) return false;
-    }
-    return true;
-}
-
 bool has(const std::vector<int>& list, std::size_t k) {
     return std::find(list.begin(), list.end(), static_cast<int>(k)) != list.end();
 }
@@ -31,14 +23,14 @@ bool has(const std::vector<int>& list, std::size_t k) {
 }  // namespace
 
 Furnisher::Furnisher(const RoomOptions& options, std::uint64_t stream)
-    : random_(options.seed, stream), size_(options.size), keep_free_(options.keep_free) {
+    : RoomMaker(options.seed, stream), size_(options.size), keep_free_(options.keep_free) {
     world_.seed = options.seed;
 }
 
 std::int32_t Furnisher::add_room_part(const char* name, double x, double y, double bottom,
                                       const Vec3& size, const std::vector<std::int32_t>& to) {
-    world_.parts.push_back({Shape::box, {x, y, bottom + size[2] / 2}, size, 0, 0, 0, name});
-    const auto id = static_cast<std::int32_t>(world_.parts.size()) - 1;
+    const std::int32_t id =
+        add_own({Shape::box, {x, y, bottom + size[2] / 2}, size, 0, 0, 0, name});
     for (const std::int32_t other : to) world_.fixed.emplace_back(other, id);
     return id;
 }
@@ -63,13 +55,13 @@ void Furnisher::build_room() {
 void Furnisher::add_corner(const char* name, const Vec3& size, bool right, bool far) {
     const double x = right ? world_.room[0] - size[0] / 2 : size[0] / 2;
     const double y = far ? world_.room[1] - size[1] / 2 : size[1] / 2;
-    const std::array<Vec3, 2> box{Vec3{x - size[0] / 2, y - size[1] / 2, 0},
-                                  Vec3{x + size[0] / 2, y + size[1] / 2, size[2]}};
+    const Bounds box{Vec3{x - size[0] / 2, y - size[1] / 2, 0},
+                     Vec3{x + size[0] / 2, y + size[1] / 2, size[2]}};
     if (is_kept_free(box)) return;
     add_room_part(name, x, y, 0, size, {floor_part, far ? 2 : 1, right ? 4 : 3});
 }
 
-bool Furnisher::is_kept_free(const std::array<Vec3, 2>& box) const {
+bool Furnisher::is_kept_free(const Bounds& box) const {
     return std::any_of(keep_free_.begin(), keep_free_.end(),
                        [&](const auto& free) { return overlap(free, box); });
 }
@@ -93,12 +85,9 @@ bool Furnisher::fits(const Blueprint& blueprint, const Pose& pose, std::int32_t 
         for (std::size_t other = 0; other < world_.parts.size(); ++other) {
             const auto id = static_cast<std::int32_t>(other);
             if ((foot && id == supporter) || (at_wall && id == wall)) continue;
-            const auto its = world_.parts[other].bounds();
-            bool near = true;
-            for (std::size_t a = 0; a < 3; ++a) {
-                near = near && box[0][a] < its[1][a] + margin && its[0][a] < box[1][a] + margin;
-            }
-            if (near && gap(part, world_.parts[other], 1e-3) < margin) return false;
+            if (overlap(box, boxes_[other], margin) &&
+                gap(part, world_.parts[other], 1e-3) < margin)
+                return false;
         }
     }
     return true;
@@ -106,33 +95,13 @@ bool Furnisher::fits(const Blueprint& blueprint, const Pose& pose, std::int32_t 
 
 void Furnisher::place(const Blueprint& blueprint, const Pose& pose, std::int32_t supporter,
                       std::int32_t wall, const std::string& where) {
-    const auto object = static_cast<std::int32_t>(world_.objects.size());
-    const auto first = static_cast<std::int32_t>(world_.parts.size());
-    world_.objects.push_back({blueprint.name, where});
-    for (const Part& local : blueprint.parts) {
-        Part part = moved(pose, local);
-        part.object = object;
-        world_.parts.push_back(std::move(part));
-    }
-    for (const auto& [a, b] : blueprint.joints) world_.fixed.emplace_back(first + a, first + b);
+    const std::int32_t first = add(blueprint, pose, where);
     for (const int foot : blueprint.feet) world_.support.emplace_back(supporter, first + foot);
     for (const int part : blueprint.wall_parts) world_.fixed.emplace_back(wall, first + part);
-    placed_.push_back({blueprint, pose, first});
 }
 
-// The pose with the back along wall 1..4 (low y, high y, low x, high x).
 Pose Furnisher::at_wall(std::int32_t wall, double along, double off, double z, double turn) const {
-    const double w = world_.room[0], d = world_.room[1];
-    switch (wall) {
-        case 1:
-            return {along * w, off, z, turn};
-        case 2:
-            return {along * w, d - off, z, pi + turn};
-        case 3:
-            return {off, along * d, z, -pi / 2 + turn};
-        default:
-            return {w - off, along * d, z, pi / 2 + turn};
-    }
+    return against_wall(wall - 1, along * world_.room[wall <= 2 ? 0 : 1], off, z, turn);
 }
 
 bool Furnisher::place_along_wall(const Blueprint& blueprint, int attempts) {

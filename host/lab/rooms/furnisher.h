@@ -7,16 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "lab/furniture/blueprint.h"
 #include "lab/rooms/furnished_room.h"
-#include "lab/solids/pose.h"
-#include "lab/solids/scene.h"
+#include "lab/rooms/room_maker.h"
 
 // Puts blueprints into a room so that solids never overlap, and different objects touch only where
 // one carries the other, hangs on a wall or leans against it.
 namespace topple::scenes {
 
-class Furnisher {
+class Furnisher : public RoomMaker {
   public:
     explicit Furnisher(const RoomOptions& options, std::uint64_t stream = 0);
 
@@ -29,14 +27,6 @@ class Furnisher {
     // A block from floor to ceiling in a corner: at the right (high x) or left, far (high y) or
     // near. None where that would reach into what is kept free.
     void add_corner(const char* name, const Vec3& size, bool right, bool far);
-
-    // A blueprint that stands somewhere: where its parts begin, and how it was moved.
-    struct Placed {
-        Blueprint blueprint;
-        Pose pose;
-        std::int32_t first_part = 0;
-    };
-    const std::vector<Placed>& placed() const { return placed_; }
 
     // Whether the blueprint's parts keep their distance from all others there, but for contacts of
     // its feet with `supporter` and of its wall parts and what leans with `wall`; -1: none.
@@ -72,20 +62,20 @@ class Furnisher {
     static std::string where(const Surface& surface, double edge);
 
     void tilt(double degrees);
-    Random& random() { return random_; }
-    World& world() { return world_; }
 
   private:
     bool place_in_plane_of_wall(const Blueprint& blueprint, std::int32_t supporter,
                                 const std::function<double()>& height);
-    bool is_kept_free(const std::array<Vec3, 2>& box) const;
+    bool is_kept_free(const Bounds& box) const;
+    // The pose with the back along wall 1..4, at a share of its length.
     Pose at_wall(std::int32_t wall, double along, double off, double z, double turn) const;
 
-    World world_;
-    Random random_;
     std::optional<Vec3> size_;
-    std::vector<std::array<Vec3, 2>> keep_free_;
-    std::vector<Placed> placed_;
+    std::vector<Bounds> keep_free_;
 };
+
+// What stands where, by chance, in each kind of furnished_room().
+World plain_room(const RoomOptions& options);
+World varied_room(const RoomOptions& options);
 
 }  // namespace topple::scenes

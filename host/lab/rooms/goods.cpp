@@ -60,8 +60,7 @@ void aisles(Composer& room, double aisle, Blueprint (*make)(Random&), double clu
             const auto box = one.bounds();
             if (x + box[1][0] - box[0][0] > size[0] - aisle) break;
             if (room.stand(one, {x - box[0][0], y, 0, random.chance(0.9) ? 0 : pi}, {0}, "floor"))
-                room.fill(room.placed().size() - 1, clutter,
-                          [&](double clearance) { return goods(random, clearance); });
+                room.fill(room.placed().size() - 1, clutter, goods);
             x += box[1][0] - box[0][0] + (random.chance(0.6) ? 0.001 : random.uniform(0.3, 1.2));
         }
     }

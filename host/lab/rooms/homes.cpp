@@ -5,8 +5,7 @@
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
-#include "lab/rooms/composer.h"
-#include "lab/rooms/plans.h"
+#include "lab/rooms/furnish.h"
 
 namespace topple::scenes {
 namespace {
@@ -14,10 +13,6 @@ namespace {
 // Things per m^2 of surface: from tidy to crowded.
 double any_clutter(Random& random) {
     return random.uniform(1, 4) * random.uniform(1, 4);
-}
-
-Composer::Make items(Random& random, Stack (*make)(Random&, double)) {
-    return [&random, make](double clearance) { return make(random, clearance); };
 }
 
 // Chairs around the last thing placed, some tucked under it.
@@ -28,11 +23,6 @@ void seat(Composer& room, std::size_t table, int chairs) {
         const Blueprint other = random.chance(0.2) ? make_splayed_chair(random) : one;
         room.before(table, random.integer(0, 3), other);
     }
-}
-
-void fill_all(Composer& room, double clutter, Stack (*make)(Random&, double)) {
-    const std::size_t count = room.placed().size();
-    for (std::size_t k = 0; k < count; ++k) room.fill(k, clutter, items(room.random(), make));
 }
 
 void scatter_on_floor(Composer& room, int most, Stack (*make)(Random&, double)) {
@@ -57,8 +47,8 @@ double fitted_run(Composer& room, int wall, double from, double to) {
             if (at + w > to) break;
             const double slack = random.uniform(0.001, 0.02);
             const Pose pose =
-                room.at_wall(wall, at + slack + w / 2,
-                             room.skirting() + random.uniform(0, 0.04) - free.back(), 0, 0);
+                room.against_wall(wall, at + slack + w / 2,
+                                  room.skirting() + random.uniform(0, 0.04) - free.back(), 0, 0);
             if (room.stand(free, pose, {0}, "floor"))
                 at += w + 2 * slack;
             else
@@ -68,16 +58,18 @@ double fitted_run(Composer& room, int wall, double from, double to) {
         const double length = std::min(to - at, random.uniform(0.6, 2.6));
         const Blueprint counter = make_counter(random, length);
         const bool done = room.fix(
-            counter, room.at_wall(wall, at + length / 2, room.skirting() - counter.back(), 0, 0));
+            counter,
+            room.against_wall(wall, at + length / 2, room.skirting() - counter.back(), 0, 0));
         if (done && random.chance(0.6)) {
             const double above = random.uniform(1.32, 1.55);
             if (random.chance(0.25) && length > 1) {
-                room.fix(make_hood(random), room.at_wall(wall, at + length / 2, 0, above + 0.1, 0));
+                room.fix(make_hood(random),
+                         room.against_wall(wall, at + length / 2, 0, above + 0.1, 0));
             } else {
                 const double wide = random.uniform(0.5, 1) * length;
                 const Blueprint cupboards = make_wall_cupboards(random, wide);
                 if (above + cupboards.height() < room.world().room[2])
-                    room.fix(cupboards, room.at_wall(wall, at + wide / 2, 0, above, 0));
+                    room.fix(cupboards, room.against_wall(wall, at + wide / 2, 0, above, 0));
             }
         }
         at += done ? length : 0.3;
@@ -87,12 +79,8 @@ double fitted_run(Composer& room, int wall, double from, double to) {
 
 }  // namespace
 
-World make_kitchen(std::uint64_t seed) {
-    Composer room(seed, 201);
+void furnish_kitchen(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(2.2, 5.5), random.uniform(2.0, 5.0), random.uniform(2.3, 2.8)};
-    room.build(shell);
     const int wall = room.any_wall();
     const double length = room.wall_length(wall);
     fitted_run(room, wall, room.skirting() + (random.chance(0.6) ? 0.001 : random.uniform(0, 0.8)),
@@ -114,23 +102,16 @@ World make_kitchen(std::uint64_t seed) {
         const Blueprint table =
             random.chance(0.8) ? make_work_table(random) : make_pedestal_table(random);
         if (random.chance(0.5) ? room.anywhere(table) : room.along_wall(table))
-            seat(room, room.placed().size() - 1, random.integer(1, 5));
+            seat(room, room.last(), random.integer(1, 5));
     }
     if (random.chance(0.3)) room.on_wall(make_wall_shelf(random), random.uniform(1.2, 1.6));
-    fill_all(room, any_clutter(random), make_kitchen_item);
+    room.fill_all(any_clutter(random), make_kitchen_item);
     if (random.chance(0.6)) room.along_wall(make_basket(random));
     scatter_on_floor(room, 3, make_home_item);
-    return std::move(room.world());
 }
 
-World make_bathroom(std::uint64_t seed) {
-    Composer room(seed, 202);
+void furnish_bathroom(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(1.6, 3.2), random.uniform(1.8, 3.6), random.uniform(2.2, 2.7)};
-    shell.doors = 1;
-    shell.windows = 1;
-    room.build(shell);
     room.along_wall(make_bath(random), true);
     room.along_wall(make_toilet(random), true);
     for (int k = random.integer(1, 2); k > 0; --k) room.along_wall(make_basin(random), true);
@@ -141,17 +122,12 @@ World make_bathroom(std::uint64_t seed) {
     if (random.chance(0.5)) room.along_wall(make_drawer_unit(random));
     if (random.chance(0.5)) room.along_wall(make_appliance(random));
     if (random.chance(0.4)) room.anywhere(make_splayed_stool(random));
-    fill_all(room, any_clutter(random), make_bath_item);
+    room.fill_all(any_clutter(random), make_bath_item);
     for (int k = random.integer(0, 2); k > 0; --k) room.anywhere(make_basket(random));
-    return std::move(room.world());
 }
 
-World make_bedroom(std::uint64_t seed) {
-    Composer room(seed, 203);
+void furnish_bedroom(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(2.6, 5), random.uniform(2.6, 4.6), random.uniform(2.3, 2.8)};
-    room.build(shell);
     if (random.chance(0.5))
         room.along_wall(make_built_in_wardrobe(random, random.uniform(0.9, 2.6)), true);
     const Blueprint bed = make_double_bed(random);
@@ -171,26 +147,21 @@ World make_bedroom(std::uint64_t seed) {
     for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_drawer_unit(random));
     if (random.chance(0.5)) room.along_wall(make_bookcase(random, 2.1));
     if (random.chance(0.4) && room.along_wall(make_work_table(random)))
-        room.before(room.placed().size() - 1, 0, make_rail_chair(random));
+        room.before(room.last(), 0, make_rail_chair(random));
     if (random.chance(0.5)) room.along_wall(make_lamp_on_pole(random));
     if (random.chance(0.4)) room.anywhere(make_rail_chair(random));
     const double clutter = any_clutter(random);
     const std::size_t count = room.placed().size();
     for (std::size_t k = 0; k < count; ++k) {
         const bool soft = room.placed()[k].blueprint.name == "bed" || random.chance(0.2);
-        room.fill(k, soft ? 3 : clutter, items(random, soft ? make_soft_item : make_home_item));
+        room.fill(k, soft ? 3 : clutter, soft ? make_soft_item : make_home_item);
     }
     scatter_on_floor(room, 4, make_soft_item);
     scatter_on_floor(room, 2, make_store_item);
-    return std::move(room.world());
 }
 
-World make_living_room(std::uint64_t seed) {
-    Composer room(seed, 204);
+void furnish_living_room(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(3.2, 6.5), random.uniform(3, 5.5), random.uniform(2.3, 3.0)};
-    room.build(shell);
     if (random.chance(0.5)) {  // a carpet is the floor's, a thick one a thing
         const Vec3& size = room.world().room;
         const double t = random.uniform(0.004, 0.014);
@@ -204,28 +175,17 @@ World make_living_room(std::uint64_t seed) {
         else
             room.anywhere(random.chance(0.5) ? make_bolster_armchair(random) : make_couch(random));
     }
-    for (int k = random.integer(0, 2); k > 0; --k) {
-        switch (random.integer(0, 2)) {
-            case 0:
-                room.anywhere(make_splayed_table(random));
-                break;
-            case 1:
-                room.anywhere(make_drum_table(random));
-                break;
-            default:
-                room.anywhere(make_table(random));
-        }
-    }
+    for (int k = random.integer(0, 2); k > 0; --k)
+        room.anywhere(one_of(random, {make_splayed_table, make_drum_table, make_table}));
     if (room.along_wall(make_tv_board(random)) && random.chance(0.8)) {
-        const std::size_t board = room.placed().size() - 1;
+        const std::size_t board = room.last();
         room.on_surface(board, room.placed()[board].blueprint.surfaces.back(),
                         {make_television(random)});
     }
     for (int k = random.integer(0, 3); k > 0; --k) room.along_wall(make_bookcase(random, 2.3));
     if (random.chance(0.5)) room.along_wall(make_free_cupboard(random));
     if (random.chance(0.4)) {
-        if (room.anywhere(make_work_table(random)))
-            seat(room, room.placed().size() - 1, random.integer(1, 6));
+        if (room.anywhere(make_work_table(random))) seat(room, room.last(), random.integer(1, 6));
     }
     for (int k = random.integer(0, 3); k > 0; --k)
         room.along_wall(make_bush(random, random.uniform(0.7, 1.6)));
@@ -241,13 +201,12 @@ World make_living_room(std::uint64_t seed) {
                   name == "sofa"       ? 2.5
                   : name == "bookcase" ? clutter + 4
                                        : clutter,
-                  items(random, name == "sofa"       ? make_soft_item
-                                : name == "bookcase" ? make_shelf_item
-                                                     : make_home_item));
+                  name == "sofa"       ? make_soft_item
+                  : name == "bookcase" ? make_shelf_item
+                                       : make_home_item);
     }
     scatter_on_floor(room, 3, make_home_item);
     if (random.chance(0.3)) room.leaning(make_leaning_thing(random));
-    return std::move(room.world());
 }
 
 }  // namespace topple::scenes

@@ -4,8 +4,7 @@
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
-#include "lab/rooms/composer.h"
-#include "lab/rooms/plans.h"
+#include "lab/rooms/furnish.h"
 
 namespace topple::scenes {
 namespace {
@@ -30,17 +29,13 @@ void line_up(Composer& room, int wall) {
     Blueprint top("worktop");
     const double wide = to - from;
     top.box("worktop", 0, 0, 0, {wide, size[1] + 0.1, random.uniform(0.025, 0.05)});
-    room.fix(top, room.at_wall(wall, from + wide / 2, -top.back(), size[2] + 0.21, 0));
+    room.fix(top, room.against_wall(wall, from + wide / 2, -top.back(), size[2] + 0.21, 0));
 }
 
 }  // namespace
 
-World make_laundry(std::uint64_t seed) {
-    Composer room(seed, 214);
+void furnish_laundry(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(2.0, 8), random.uniform(1.8, 6), random.uniform(2.3, 3.2)};
-    room.build(shell);
     for (int k = random.integer(1, 3); k > 0; --k) line_up(room, room.any_wall());
     if (random.chance(0.5)) room.along_wall(make_counter(random, random.uniform(0.8, 2)), true);
     if (random.chance(0.5))
@@ -56,16 +51,13 @@ World make_laundry(std::uint64_t seed) {
         room.row(room.any_wall(), random.uniform(0.1, 1), random.uniform(1.5, 3), 0.5,
                  [&] { return chair; });
     const double clutter = random.uniform(0.5, 6);
-    const std::size_t count = room.placed().size();
-    for (std::size_t k = 0; k < count; ++k)
-        room.fill(k, clutter, [&](double c) {
-            return random.chance(0.4) ? make_soft_item(random, c) : make_bath_item(random, c);
-        });
+    room.fill_all(clutter, [](Random& random, double c) {
+        return random.chance(0.4) ? make_soft_item(random, c) : make_bath_item(random, c);
+    });
     for (int k = random.integer(1, 7); k > 0; --k) {
         const Stack stack = make_floor_thing(random, 1);
         if (!stack.empty() && !room.anywhere(stack.front())) room.along_wall(stack.front());
     }
-    return std::move(room.world());
 }
 
 }  // namespace topple::scenes

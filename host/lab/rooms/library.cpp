@@ -5,9 +5,8 @@
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
-#include "lab/rooms/composer.h"
+#include "lab/rooms/furnish.h"
 #include "lab/rooms/goods.h"
-#include "lab/rooms/plans.h"
 
 namespace topple::scenes {
 namespace {
@@ -63,7 +62,7 @@ void stand_in_rows(Composer& room, const BookcaseMake& make) {
             const double flip = make.two_sided || random.chance(0.8) ? 0 : pi;
             const Pose pose{turned ? y : x, turned ? x : y, 0, (turned ? pi / 2 : 0) + flip + skew};
             if (room.stand(make_case_of_books(random, make), pose, {0}, "floor"))
-                shelve_books(room, room.placed().size() - 1, make);
+                shelve_books(room, room.last(), make);
         }
     }
 }
@@ -76,10 +75,10 @@ void place_tables(Composer& room) {
         const bool show = random.chance(0.4);
         if (!room.anywhere(random.chance(0.8) ? make_work_table(random) : make_drum_table(random)))
             continue;
-        const std::size_t table = room.placed().size() - 1;
+        const std::size_t table = room.last();
         for (int c = show ? 0 : random.integer(1, 6); c > 0; --c)
             room.before(table, random.integer(0, 3), chair);
-        room.fill(table, show ? 7 : 2, [&](double clearance) {
+        room.fill(table, show ? 7 : 2, [](Random& random, double clearance) {
             return random.chance(0.6) ? make_shelf_item(random, std::min(clearance, 0.35))
                                       : make_desk_item(random, clearance);
         });
@@ -87,34 +86,29 @@ void place_tables(Composer& room) {
     if (random.chance(0.7)) {
         if (random.chance(0.5) ? room.anywhere(make_service_desk(random))
                                : room.along_wall(make_service_desk(random))) {
-            const std::size_t desk = room.placed().size() - 1;
+            const std::size_t desk = room.last();
             room.before(desk, 0, make_office_chair(random));
-            room.fill(desk, 4, [&](double c) { return make_desk_item(random, c); });
+            room.fill(desk, 4, make_desk_item);
         }
     }
 }
 
 }  // namespace
 
-World make_library(std::uint64_t seed) {
-    Composer room(seed, 211);
+void furnish_library(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(4, 13), random.uniform(4, 12), random.uniform(2.5, 4.2)};
-    shell.ceiling = 0.35;
-    room.build(shell);
-    const BookcaseMake make = any_bookcase_make(random, shell.size[2] - 0.1);
+    const BookcaseMake make = any_bookcase_make(random, room.world().room[2] - 0.1);
     if (random.chance(0.85)) line_walls(room, make);
     if (random.chance(0.75))
-        stand_in_rows(room,
-                      random.chance(0.6) ? make : any_bookcase_make(random, shell.size[2] - 0.1));
+        stand_in_rows(room, random.chance(0.6)
+                                ? make
+                                : any_bookcase_make(random, room.world().room[2] - 0.1));
     place_tables(room);
     for (int k = random.integer(0, 2); k > 0; --k)
         room.anywhere(random.chance(0.5) ? make_bolster_armchair(random) : make_ottoman(random));
     leave_on_floor(room, random.integer(0, 4));
     if (random.chance(0.4)) room.along_wall(make_bush(random, random.uniform(0.7, 1.4)));
     if (random.chance(0.3)) room.anywhere(make_step_ladder(random));
-    return std::move(room.world());
 }
 
 }  // namespace topple::scenes

@@ -4,18 +4,13 @@
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
-#include "lab/rooms/composer.h"
+#include "lab/rooms/furnish.h"
 #include "lab/rooms/goods.h"
-#include "lab/rooms/plans.h"
 
 namespace topple::scenes {
 
-World make_lounge(std::uint64_t seed) {
-    Composer room(seed, 213);
+void furnish_lounge(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(3.2, 9), random.uniform(3, 7), random.uniform(2.4, 3.4)};
-    room.build(shell);
     const Vec3& size = room.world().room;
     if (random.chance(0.5))
         room.add_building_box("carpet", size[0] * random.uniform(0.35, 0.65),
@@ -35,21 +30,9 @@ World make_lounge(std::uint64_t seed) {
                  [&] { return equal ? like : make_couch(random); });
     }
     const std::size_t seats = room.placed().size();
-    for (int k = random.integer(0, 4); k > 0; --k) {
-        switch (random.integer(0, 3)) {
-            case 0:
-                room.anywhere(make_bolster_armchair(random));
-                break;
-            case 1:
-                room.anywhere(make_ottoman(random));
-                break;
-            case 2:
-                room.anywhere(make_corner_sofa(random));
-                break;
-            default:
-                room.anywhere(make_couch(random));
-        }
-    }
+    for (int k = random.integer(0, 4); k > 0; --k)
+        room.anywhere(
+            one_of(random, {make_bolster_armchair, make_ottoman, make_corner_sofa, make_couch}));
     for (std::size_t k = 0; k < seats; ++k) {  // low tables before them
         if (!random.chance(0.4)) continue;
         room.before(k, 0, random.chance(0.5) ? make_ottoman(random) : make_drum_table(random));
@@ -57,7 +40,7 @@ World make_lounge(std::uint64_t seed) {
     for (int k = random.integer(0, 3); k > 0; --k)
         room.anywhere(random.chance(0.5) ? make_drum_table(random) : make_pedestal_table(random));
     if (random.chance(0.6) && room.along_wall(make_tv_board(random))) {
-        const std::size_t board = room.placed().size() - 1;
+        const std::size_t board = room.last();
         room.on_surface(board, room.placed()[board].blueprint.surfaces.back(),
                         {make_television(random)});
     }
@@ -73,12 +56,9 @@ World make_lounge(std::uint64_t seed) {
     const std::size_t count = room.placed().size();
     for (std::size_t k = 0; k < count; ++k) {
         const bool soft = room.placed()[k].blueprint.name == "sofa";
-        room.fill(k, soft ? 2.5 : clutter, [&](double c) {
-            return soft ? make_soft_item(random, c) : make_home_item(random, c);
-        });
+        room.fill(k, soft ? 2.5 : clutter, soft ? make_soft_item : make_home_item);
     }
     leave_on_floor(room, random.integer(0, 5));
-    return std::move(room.world());
 }
 
 }  // namespace topple::scenes

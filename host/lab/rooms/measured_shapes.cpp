@@ -225,15 +225,9 @@ PointCloud clean_points(const World& world, double spacing_m) {
 
 std::vector<Mat4> poses_around(const World& world, unsigned frames) {
     constexpr double nearest_m = 0.9, sight = 1.2, beside_wall_m = 0.15;
-    Vec3 low, high;
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-    for (const Vec3& p : hull_points(world, measured_object)) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            low[a] = std::min(low[a], p[a]);
-            high[a] = std::max(high[a], p[a]);
-        }
-    }
+    Bounds box = no_bounds();
+    for (const Vec3& p : hull_points(world, measured_object)) extend(box, p);
+    const auto& [low, high] = box;
     const Vec3 middle{(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
     const double across = std::hypot(high[0] - low[0], high[1] - low[1]),
                  away = std::max(nearest_m, across / 2 + sight * (high[2] - low[2]) / 2 + 0.5);

@@ -5,9 +5,8 @@
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
-#include "lab/rooms/composer.h"
+#include "lab/rooms/furnish.h"
 #include "lab/rooms/goods.h"
-#include "lab/rooms/plans.h"
 
 namespace topple::scenes {
 namespace {
@@ -34,19 +33,15 @@ std::vector<std::size_t> join_tables(Composer& room, const Blueprint& table) {
         const double x = (k % nx - (nx - 1) / 2.0) * next, y = (k / nx - (ny - 1) / 2.0) * step;
         const bool about = joined && k / nx == 0 && ny == 2;  // they face one another
         const Pose pose = moved(middle, Pose{x, y, 0, about ? pi : 0});
-        if (room.stand(table, pose, {0}, "floor")) found.push_back(room.placed().size() - 1);
+        if (room.stand(table, pose, {0}, "floor")) found.push_back(room.last());
     }
     return found;
 }
 
 }  // namespace
 
-World make_meeting(std::uint64_t seed) {
-    Composer room(seed, 212);
+void furnish_meeting(Composer& room) {
     Random& random = room.random();
-    Composer::Shell shell;
-    shell.size = {random.uniform(3.5, 10), random.uniform(3, 8), random.uniform(2.4, 3.6)};
-    room.build(shell);
     for (int k = random.integer(0, 3); k > 0; --k)
         room.on_wall(make_wall_board(random, random.uniform(0.8, 3.0)), random.uniform(0.7, 1.0));
     if (random.chance(0.4))
@@ -61,7 +56,7 @@ World make_meeting(std::uint64_t seed) {
         for (int k = static_cast<int>(seats * random.uniform(0.4, 1.4)); k > 0; --k)
             room.before(table, random.chance(0.8) ? random.integer(0, 1) : random.integer(2, 3),
                         chair);
-        room.fill(table, clutter, [&](double c) { return make_desk_item(random, c); });
+        room.fill(table, clutter, make_desk_item);
     }
     if (random.chance(0.4) && !room.walls().empty())  // spare chairs along a wall
         room.row(room.any_wall(), random.uniform(0.1, 1), random.uniform(2, 4), 0.7,
@@ -71,13 +66,10 @@ World make_meeting(std::uint64_t seed) {
     for (int k = random.integer(0, 3); k > 0; --k) {
         const Blueprint low =
             random.chance(0.5) ? make_free_cupboard(random) : make_drawer_unit(random);
-        if (room.along_wall(low))
-            room.fill(room.placed().size() - 1, 4,
-                      [&](double c) { return make_shelf_item(random, c); });
+        if (room.along_wall(low)) room.fill(room.last(), 4, make_shelf_item);
     }
     leave_on_floor(room, random.integer(0, 5));
     for (int k = random.integer(0, 6); k > 0; --k) room.anywhere(chair);
-    return std::move(room.world());
 }
 
 }  // namespace topple::scenes

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "lab/rooms/paint.h"
-
 #include <algorithm>
 #include <array>
 #include <map>
 #include <string>
 #include <string_view>
+
+#include "lab/rooms/furnish.h"
 
 namespace topple::scenes {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "lab/rooms/furnisher.h"
-#include "lab/rooms/room_plans.h"
 
 namespace topple::scenes {
 namespace {
@@ -62,23 +62,14 @@ class PlainRoom {
     void place_floor_things() {
         const int count = static_cast<int>(std::lround(clutter_ * random_.integer(3, 6)));
         for (int k = 0; k < count; ++k) {
-            switch (random_.integer(0, 5)) {
-                case 0:
-                    room_.place_anywhere(make_crate(random_));
-                    break;
-                case 1:
-                    room_.place_anywhere(make_roll(random_));
-                    break;
-                case 2:
-                    room_.place_anywhere(make_marker(random_));
-                    break;
-                case 3:
-                    room_.place_anywhere(make_stool(random_));
-                    break;
-                default: {
-                    const auto item = make_item(random_, 0.5, 0.3);
-                    if (item.size() == 1) room_.place_anywhere(item.front());
-                }
+            constexpr std::array<BlueprintMake, 4> makes{make_crate, make_roll, make_marker,
+                                                         make_stool};
+            const std::size_t which = random_.index(makes.size() + 2);
+            if (which < makes.size()) {
+                room_.place_anywhere(makes[which](random_));
+            } else {
+                const auto item = make_item(random_, 0.5, 0.3);
+                if (item.size() == 1) room_.place_anywhere(item.front());
             }
         }
     }

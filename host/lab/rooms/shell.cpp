@@ -8,13 +8,6 @@
 // The building's part of a Composer's room.
 namespace topple::scenes {
 
-std::int32_t Composer::add_building(Part part) {
-    part.object = 0;
-    boxes_.push_back(part.bounds());
-    world_.parts.push_back(std::move(part));
-    return static_cast<std::int32_t>(world_.parts.size()) - 1;
-}
-
 std::int32_t Composer::add_building_box(const char* name, double x, double y, double bottom,
                                         const Vec3& size) {
     return add_building({Shape::box, {x, y, bottom + size[2] / 2}, size, 0, 0, 0, name});
@@ -24,7 +17,7 @@ std::int32_t Composer::add_building_box(const char* name, double x, double y, do
 void Composer::wall_piece(int wall, const char* name, double from, double to, double bottom,
                           double top, double inset, double deep) {
     if (to - from < 1e-3 || top - bottom < 1e-3) return;
-    const Pose pose = at_wall(wall, (from + to) / 2, -inset - deep / 2, bottom, 0);
+    const Pose pose = against_wall(wall, (from + to) / 2, -inset - deep / 2, bottom, 0);
     const bool x_along = wall < 2;
     const Vec3 size{x_along ? to - from : deep, x_along ? deep : to - from, top - bottom};
     add_building_box(name, pose.x, pose.y, bottom, size);
@@ -99,7 +92,7 @@ void Composer::fill_opening(int wall, const Opening& o) {
     const double inset = 0.6 * thickness_;
     if (o.door) {
         const double wide = o.to - o.from;
-        const Pose a = at_wall(wall, o.from, 0, 0, 0), b = at_wall(wall, o.to, 0.7, 0, 0);
+        const Pose a = against_wall(wall, o.from, 0, 0, 0), b = against_wall(wall, o.to, 0.7, 0, 0);
         free_.push_back({Vec3{std::min(a.x, b.x), std::min(a.y, b.y), 0.03},
                          Vec3{std::max(a.x, b.x), std::max(a.y, b.y), 1.9}});
         if (random_.chance(0.3)) return;  // open
@@ -112,10 +105,10 @@ void Composer::fill_opening(int wall, const Opening& o) {
         }
         // Ajar into the room, its hinge at the opening's far edge.
         const double angle = random_.uniform(0.15, 1.5);
-        const Pose hinge = at_wall(wall, o.to, 0.005, 0, 0);
-        const Pose way = at_wall(wall, o.from, 0.005, 0, 0);
+        const Pose hinge = against_wall(wall, o.to, 0.005, 0, 0);
+        const Pose way = against_wall(wall, o.from, 0.005, 0, 0);
         const double dx = (way.x - hinge.x) / wide, dy = (way.y - hinge.y) / wide;
-        const Pose inwards = at_wall(wall, o.to, 1.005, 0, 0);
+        const Pose inwards = against_wall(wall, o.to, 1.005, 0, 0);
         const double nx = inwards.x - hinge.x, ny = inwards.y - hinge.y;
         const double ux = std::cos(angle) * dx + std::sin(angle) * nx,
                      uy = std::cos(angle) * dy + std::sin(angle) * ny;
@@ -163,7 +156,7 @@ void Composer::hang_curtain(int wall, const Opening& o) {
                   k % 2 == 0 ? turn : -turn);
         b.lying("rod", 0, 0, top, covered + 0.1, 0.02);
         const double deep = 0.5 * strip * std::sin(turn) + 0.025;
-        const Pose pose = at_wall(wall, from + covered / 2, deep + skirting_, 0, 0);
+        const Pose pose = against_wall(wall, from + covered / 2, deep + skirting_, 0, 0);
         fix(b, pose);
     }
 }
@@ -208,7 +201,8 @@ void Composer::add_fittings() {
     }
     if (random_.chance(0.3)) {
         const int wall = any_wall();
-        const Pose p = at_wall(wall, random_.uniform(0.1, wall_length(wall) - 0.1), 0.035, 0, 0);
+        const Pose p =
+            against_wall(wall, random_.uniform(0.1, wall_length(wall) - 0.1), 0.035, 0, 0);
         const double r = random_.uniform(0.02, 0.06);
         Blueprint pipe("pipe");
         pipe.cylinder("pipe", 0, 0, 0, r, h);

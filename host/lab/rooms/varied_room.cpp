@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "lab/furniture/varied.h"
 #include "lab/rooms/furnisher.h"
-#include "lab/rooms/room_plans.h"
 
 namespace topple::scenes {
 namespace {
@@ -57,23 +57,10 @@ class VariedRoom {
     }
 
     void place_large_things() {
-        switch (random_.integer(0, 5)) {
-            case 0:
-                room_.place_along_wall(make_podium(random_));
-                break;
-            case 1:
-                room_.place_along_wall(make_stairs(random_));
-                break;
-            case 2:
-                room_.place_along_wall(make_loft_bed(random_));
-                break;
-            case 3:
-            case 4:
-                room_.place_along_wall(make_made_bed(random_));
-                break;
-            default:
-                break;
-        }
+        constexpr std::array<BlueprintMake, 5> makes{make_podium, make_stairs, make_loft_bed,
+                                                     make_made_bed, make_made_bed};
+        const std::size_t which = random_.index(makes.size() + 1);
+        if (which < makes.size()) room_.place_along_wall(makes[which](random_));
         if (random_.chance(0.5)) room_.place_along_wall(make_wardrobe(random_));
         const int shelves = random_.integer(0, 2);
         for (int k = 0; k < shelves; ++k) {
@@ -95,23 +82,14 @@ class VariedRoom {
             const std::size_t index = room_.placed().size() - 1;
             if (table.height() < 0.6) continue;
             for (int chairs = random_.integer(1, 2); chairs > 0; --chairs)
-                room_.place_before(index, any_chair());
+                room_.place_before(
+                    index, one_of(random_, {make_chair, make_swivel_chair, make_splayed_chair,
+                                            make_splayed_chair}));
         }
         if (random_.chance(0.6)) room_.place_along_wall(make_drum_table(random_));
         for (int stools = random_.integer(0, 2); stools > 0; --stools)
             room_.place_anywhere(make_splayed_stool(random_));
         if (random_.chance(0.5)) room_.place_anywhere(make_pouf(random_));
-    }
-
-    Blueprint any_chair() {
-        switch (random_.integer(0, 3)) {
-            case 0:
-                return make_chair(random_);
-            case 1:
-                return make_swivel_chair(random_);
-            default:
-                return make_splayed_chair(random_);
-        }
     }
 
     void place_against_walls() {
@@ -161,16 +139,11 @@ class VariedRoom {
         const bool soft = surface.where == "bed" || surface.where == "sofa";
         if (soft && random_.chance(0.7)) return make_pillow(random_);
         if (surface.where == "podium" && random_.chance(0.6)) {
-            switch (random_.integer(0, 3)) {
-                case 0:
-                    return {{make_splayed_stool(random_), {}}};
-                case 1:
-                    return {{make_pouf(random_), {}}};
-                case 2:
-                    return {{make_topiary(random_), {}}};
-                default:
-                    return make_pile(random_, {0.4, 0.32, 0.25}, random_.integer(2, 3));
-            }
+            constexpr std::array<BlueprintMake, 3> makes{make_splayed_stool, make_pouf,
+                                                         make_topiary};
+            const std::size_t which = random_.index(makes.size() + 1);
+            if (which < makes.size()) return {{makes[which](random_), {}}};
+            return make_pile(random_, {0.4, 0.32, 0.25}, random_.integer(2, 3));
         }
         return make_varied_item(random_, surface.clearance, 0.4);
     }

@@ -13,7 +13,7 @@
 #include "lab/parallel.h"
 #include "lab/rooms/building.h"
 #include "lab/scan/room_scan.h"
-#include "lab/solids/part_json.h"
+#include "lab/solids/ground_truth.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -35,12 +35,12 @@ constexpr std::uint64_t block_points = 1'000'000;  // points that are in memory 
 constexpr const char* building_mark = "property int truth_object";
 constexpr std::uint64_t noise_stream = 5ULL << 40;
 
-Vec3 moved(const Vec3& origin, const Vec3& p) {
+Vec3 shifted(const Vec3& origin, const Vec3& p) {
     return {origin[0] + p[0], origin[1] + p[1], origin[2] + p[2]};
 }
 
-json moved_json(const Vec3& origin, Part part) {
-    part.center = moved(origin, part.center);
+json shifted_json(const Vec3& origin, Part part) {
+    part.center = shifted(origin, part.center);
     return part_json(part);
 }
 
@@ -62,12 +62,12 @@ class TruthWriter {
         json doors = json::array(), stations = json::array(), parts = json::array();
         for (const Building::Door& door : room.doors) {
             doors.push_back({{"to", door.to},
-                             {"low", moved(room.origin, door.opening[0])},
-                             {"high", moved(room.origin, door.opening[1])}});
+                             {"low", shifted(room.origin, door.opening[0])},
+                             {"high", shifted(room.origin, door.opening[1])}});
         }
-        for (const Vec3& station : room.stations) stations.push_back(moved(room.origin, station));
+        for (const Vec3& station : room.stations) stations.push_back(shifted(room.origin, station));
         for (const Part& part : room.world.parts) {
-            if (part.object == 0) parts.push_back(moved_json(room.origin, part));
+            if (part.object == 0) parts.push_back(shifted_json(room.origin, part));
         }
         element({{"id", room.id},
                  {"storey", room.storey},
@@ -106,24 +106,19 @@ class TruthWriter {
         for (std::size_t k = 1; k < world.objects.size(); ++k) {
             json parts = json::array();
             double volume = 0;
-            std::array<Vec3, 2> bounds{};
+            Bounds bounds = no_bounds();
             for (const Part& part : world.parts) {
                 if (static_cast<std::size_t>(part.object) != k) continue;
-                const auto box = part.bounds();
-                if (parts.empty()) bounds = box;
-                for (std::size_t a = 0; a < 3; ++a) {
-                    bounds[0][a] = std::min(bounds[0][a], box[0][a]);
-                    bounds[1][a] = std::max(bounds[1][a], box[1][a]);
-                }
+                extend(bounds, part.bounds());
                 volume += part.volume();
-                parts.push_back(moved_json(room.origin, part));
+                parts.push_back(shifted_json(room.origin, part));
             }
             element({{"id", id(k)},
                      {"name", world.objects[k].name},
                      {"where", world.objects[k].where},
                      {"room", room.id},
                      {"points", points[k]},
-                     {"bounds", {moved(room.origin, bounds[0]), moved(room.origin, bounds[1])}},
+                     {"bounds", {shifted(room.origin, bounds[0]), shifted(room.origin, bounds[1])}},
                      {"volume", volume},
                      {"rests_on", rests[k]},
                      {"fixed_to", fixed[k]},
@@ -198,7 +193,7 @@ class CloudWriter {
                 const auto id =
                     object == 0 ? 0 : static_cast<std::int32_t>(first_object) + object - 1;
                 for (std::size_t k = 0; k < places.size(); ++k) {
-                    const Vec3 p = moved(room.origin, places[k]);
+                    const Vec3 p = shifted(room.origin, places[k]);
                     vertices_[starts_[n] + k] = {static_cast<float>(p[0]), static_cast<float>(p[1]),
                                                  static_cast<float>(p[2]), id};
                 }

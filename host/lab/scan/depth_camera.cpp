@@ -10,6 +10,8 @@
 #include "core/vectors.h"
 #include "lab/random.h"
 #include "lab/rooms/furnished_room.h"
+#include "lab/scan/ray_caster.h"
+#include "lab/solids/rigid.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -17,7 +19,6 @@ namespace {
 
 using std::numbers::pi;
 constexpr double no_hit = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t tile = 16;  // pixels, for culling
 
 Vec3 unit(const Vec3& v) {
     const double length = std::hypot(v[0], v[1], v[2]);
@@ -28,86 +29,10 @@ struct Ray {
     Vec3 direction;  // unit, room frame
     double z_share;  // its component along the camera's axis
 };
-
-struct Candidate {
-    double from;  // no point of the part is nearer than this
-    std::int16_t part;
-};
-
-// Casts the rays of one image.
-class Caster {
-  public:
-    Caster(const World& world, const Intrinsics& k, const Mat4& pose)
-        : world_(world), k_(k), pose_(pose), eye_{pose[3], pose[7], pose[11]} {
-        for (const Part& part : world.parts) headings_.push_back(part.heading());
-    }
-
-    Ray ray(double u, double v) const {
-        const Vec3 c{(u - k_.cx) / k_.fx, (v - k_.cy) / k_.fy, 1};
-        const Vec3 d = unit(c);
-        return {{pose_[0] * d[0] + pose_[1] * d[1] + pose_[2] * d[2],
-                 pose_[4] * d[0] + pose_[5] * d[1] + pose_[6] * d[2],
-                 pose_[8] * d[0] + pose_[9] * d[1] + pose_[10] * d[2]},
-                d[2]};
-    }
-
-    // The parts whose bounding spheres meet the cone around a tile (with two pixels' room for the
-    // jitter), nearest first.
-    void candidates(std::uint32_t u0, std::uint32_t v0, std::vector<Candidate>& list) const {
-        const Vec3 axis = ray(u0 + tile / 2.0, v0 + tile / 2.0).direction;
-        double cosine = 1;
-        for (const double u : {u0 - 2.0, u0 + tile + 2.0}) {
-            for (const double v : {v0 - 2.0, v0 + tile + 2.0}) {
-                cosine = std::min(cosine, dot(axis, ray(u, v).direction));
-            }
-        }
-        const double half = std::acos(std::clamp(cosine, -1.0, 1.0));
-        list.clear();
-        for (std::size_t n = 0; n < world_.parts.size(); ++n) {
-            const Part& part = world_.parts[n];
-            const Vec3 to{part.center[0] - eye_[0], part.center[1] - eye_[1],
-                          part.center[2] - eye_[2]};
-            const double distance = std::sqrt(dot(to, to)), radius = part.bounding_radius();
-            if (distance > radius) {
-                const double angle = std::acos(std::clamp(dot(axis, to) / distance, -1.0, 1.0));
-                if (angle > half + std::asin(radius / distance)) continue;
-            }
-            list.push_back({std::max(0.0, distance - radius), static_cast<std::int16_t>(n)});
-        }
-        std::sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
-            return a.from != b.from ? a.from < b.from : a.part < b.part;
-        });
-    }
-
-    double cast(const Ray& ray, const std::vector<Candidate>& list, std::int16_t& part) const {
-        double best = no_hit;
-        part = -1;
-        for (const Candidate& c : list) {
-            if (c.from > best) break;
-            const auto n = static_cast<std::size_t>(c.part);
-            const double t = world_.parts[n].hit(eye_, ray.direction, headings_[n]);
-            if (t < best || (t == best && t < no_hit && c.part < part)) {
-                best = t;
-                part = c.part;
-            }
-        }
-        return best;
-    }
-
-    // Cosine between the ray and the surface's normal where it hit.
-    double incidence(const Ray& ray, double t, std::int16_t part) const {
-        const Vec3 p{eye_[0] + t * ray.direction[0], eye_[1] + t * ray.direction[1],
-                     eye_[2] + t * ray.direction[2]};
-        return std::abs(dot(world_.parts[static_cast<std::size_t>(part)].normal(p), ray.direction));
-    }
-
-  private:
-    const World& world_;
-    const Intrinsics& k_;
-    const Mat4& pose_;
-    Vec3 eye_;
-    std::vector<Part::Heading> headings_;
-};
+Ray ray_through(const Intrinsics& k, const Mat4& pose, double u, double v) {
+    const Vec3 d = unit({(u - k.cx) / k.fx, (v - k.cy) / k.fy, 1});
+    return {turned(pose, d), d[2]};
+}
 
 double noisy(double z, double cosine, const CameraOptions& o, Random& random) {
     const double angle = std::acos(std::clamp(cosine, 0.0, 1.0));
@@ -115,12 +40,7 @@ double noisy(double z, double cosine, const CameraOptions& o, Random& random) {
     double sigma = o.axial_m + o.growth * (z - 0.4) * (z - 0.4);
     const double flat = angle / (pi / 2 - angle);
     sigma += 0.0001 * flat * flat / std::sqrt(z);
-    z += sigma * random.normal();
-    if (o.disparity_steps) {
-        const double constant = o.intrinsics.fx * 0.075 * 8;  // eighths of a pixel at 1 m
-        z = constant / std::round(constant / z);
-    }
-    return z;
+    return z + sigma * random.normal();
 }
 
 // A sensor mixes or loses the readings on both sides of a jump in depth.
@@ -182,7 +102,7 @@ Mat4 single_pose(const World& world) {
         double seen = 0;
         for (const auto& [supporter, part] : world.support) {
             const Vec3& c = world.parts[static_cast<std::size_t>(part)].center;
-            const Vec3 to = unit({c[0] - eye[0], c[1] - eye[1], c[2] - eye[2]});
+            const Vec3 to = unit(minus(c, eye));
             if (to[0] * pose[2] + to[1] * pose[6] + to[2] * pose[10] > 0.88)
                 seen += supporter == 0 ? 1 : 2;
         }
@@ -195,7 +115,7 @@ Mat4 single_pose(const World& world) {
 }
 
 Mat4 to_input(const World& world, const Mat4& pose) {
-    Mat4 out{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+    Mat4 out = identity;
     for (std::size_t column = 0; column < 4; ++column) {
         const Vec3 v = world.to_input({pose[column], pose[4 + column], pose[8 + column]});
         for (std::size_t row = 0; row < 3; ++row) out[4 * row + column] = v[row];
@@ -206,7 +126,7 @@ Mat4 to_input(const World& world, const Mat4& pose) {
 }  // namespace
 
 Mat4 look_at(const Vec3& eye, const Vec3& target) {
-    const Vec3 forward = unit({target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]});
+    const Vec3 forward = unit(minus(target, eye));
     const Vec3 right = unit(cross(forward, {0, 0, 1}));
     const Vec3 down = cross(forward, right);
     return {right[0], down[0], forward[0], eye[0], right[1], down[1], forward[1], eye[1],
@@ -217,38 +137,33 @@ std::vector<std::int16_t> render(const World& world, const CameraOptions& option
                                  const Mat4& camera_to_room, std::uint64_t frame_number,
                                  std::vector<std::uint16_t>& depth) {
     const Intrinsics& k = options.intrinsics;
-    const Caster caster(world, k, camera_to_room);
+    const RayCaster caster(world.parts);
+    const Vec3 eye{camera_to_room[3], camera_to_room[7], camera_to_room[11]};
     const std::size_t pixels = std::size_t{k.width} * k.height;
     std::vector<double> exact(pixels, no_hit);
     std::vector<std::int16_t> part(pixels, -1);
     depth.assign(pixels, 0);
-    std::vector<Candidate> list;
-    for (std::uint32_t v0 = 0; v0 < k.height; v0 += tile) {
-        for (std::uint32_t u0 = 0; u0 < k.width; u0 += tile) {
-            caster.candidates(u0, v0, list);
-            for (std::uint32_t v = v0; v < std::min(v0 + tile, k.height); ++v) {
-                for (std::uint32_t u = u0; u < std::min(u0 + tile, k.width); ++u) {
-                    const std::size_t at = std::size_t{v} * k.width + u;
-                    Random random(options.seed, frame_number * pixels + at);
-                    double du = 0, dv = 0;
-                    if (options.noise) {
-                        du = std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
-                        dv = std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
-                    }
-                    const Ray ray = caster.ray(u + du, v + dv);
-                    const double t = caster.cast(ray, list, part[at]);
-                    if (part[at] < 0) continue;
-                    double z = t * ray.z_share;
-                    exact[at] = z;
-                    if (options.noise)
-                        z = noisy(z, caster.incidence(ray, t, part[at]), options, random);
-                    const double stored = std::round(z * k.depth_scale);
-                    if (z >= options.min_range_m && z <= options.max_range_m && stored < 65535.5) {
-                        depth[at] = static_cast<std::uint16_t>(stored);
-                    }
-                }
-            }
+    for (std::size_t at = 0; at < pixels; ++at) {
+        Random random(options.seed, frame_number * pixels + at);
+        double u = static_cast<double>(at % k.width), v = static_cast<double>(at / k.width);
+        if (options.noise) {
+            u += std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
+            v += std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
         }
+        const Ray ray = ray_through(k, camera_to_room, u, v);
+        const RayCaster::Hit hit = caster.cast(eye, ray.direction);
+        if (hit.part < 0) continue;
+        part[at] = static_cast<std::int16_t>(hit.part);
+        double z = hit.distance * ray.z_share;
+        exact[at] = z;
+        if (options.noise) {
+            const Vec3 normal = world.parts[static_cast<std::size_t>(hit.part)].normal(
+                along(eye, hit.distance, ray.direction));
+            z = noisy(z, std::abs(dot(normal, ray.direction)), options, random);
+        }
+        const double stored = std::round(z * k.depth_scale);
+        if (z >= options.min_range_m && z <= options.max_range_m && stored < 65535.5)
+            depth[at] = static_cast<std::uint16_t>(stored);
     }
     if (options.noise) drop_edges(k, exact, depth);
     for (std::size_t at = 0; at < pixels; ++at) {

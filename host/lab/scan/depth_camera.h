@@ -22,11 +22,10 @@ struct CameraOptions {
     // Standard deviation of depth: axial_m + growth * (z - 0.4)^2 (Nguyen, Izadi & Lovell 2012, for
     // a Kinect), more at grazing incidence.
     double axial_m = 0.0012, growth = 0.0019;
-    double lateral_px = 0.25;      // standard deviation of where in the image a pixel looks
-    double grazing_deg = 82;       // flatter than this: no reading
-    bool disparity_steps = false;  // round to eighths of a pixel of disparity at 7.5 cm base
-    double fuse_m = 0.01;          // cell of the fused cloud
-    unsigned threads = 0;          // 0: all cores; the result does not depend on it
+    double lateral_px = 0.25;  // standard deviation of where in the image a pixel looks
+    double grazing_deg = 82;   // flatter than this: no reading
+    double fuse_m = 0.01;      // cell of the fused cloud
+    unsigned threads = 0;      // 0: all cores; the result does not depend on it
 };
 
 struct Sequence {

@@ -73,6 +73,16 @@ std::array<double, 4> quaternion(const Mat4& m) {
     return {(m[2] + m[8]) / s, (m[6] + m[9]) / s, s / 4, (m[4] - m[1]) / s};
 }
 
+// The line of trajectory.txt for a pose.
+std::string trajectory_line(double time_s, const Mat4& pose) {
+    std::ostringstream line;
+    line << std::fixed << std::setprecision(9);
+    line << time_s << ' ' << pose[3] << ' ' << pose[7] << ' ' << pose[11];
+    for (const double q : quaternion(pose)) line << ' ' << q;
+    line << '\n';
+    return line.str();
+}
+
 constexpr std::array<std::string_view, 5> scan_files{"cloud.ply", "truth.ply", "trajectory.txt",
                                                      "intrinsics.json", "truth.json"};
 constexpr std::array<std::string_view, 2> scan_folders{"depth", "color"};
@@ -104,20 +114,40 @@ void make_folder(const std::filesystem::path& folder) {
     if (error) throw Error(ErrorKind::input, folder.string() + ": " + error.message());
 }
 
-std::string trajectory_line(double time_s, const Mat4& pose) {
-    std::ostringstream line;
-    line << std::fixed << std::setprecision(9);
-    line << time_s << ' ' << pose[3] << ' ' << pose[7] << ' ' << pose[11];
-    for (const double q : quaternion(pose)) line << ' ' << q;
-    line << '\n';
-    return line.str();
-}
-
 std::string intrinsics_text(const Intrinsics& k) {
     const nlohmann::json camera{
         {"width", k.width}, {"height", k.height},          {"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx},
         {"cy", k.cy},       {"depth_scale", k.depth_scale}};
     return camera.dump(1) + "\n";
+}
+
+void write_frames(const std::filesystem::path& folder, const Intrinsics& k,
+                  const std::vector<DepthFrame>& frames, double frames_per_s,
+                  const std::vector<std::vector<std::array<std::uint8_t, 3>>>& colour) {
+    make_folder(folder / "depth");
+    if (!colour.empty()) make_folder(folder / "color");
+    std::string poses;
+    for (std::size_t n = 0; n < frames.size(); ++n) {
+        std::ostringstream name;
+        name << std::setw(4) << std::setfill('0') << n << ".png";
+        write_depth_png(folder / "depth" / name.str(), k.width, frames[n].depth);
+        if (!colour.empty()) write_colour_png(folder / "color" / name.str(), k.width, colour[n]);
+        poses += trajectory_line(static_cast<double>(n) / frames_per_s, frames[n].camera_to_world);
+    }
+    if (frames.size() > 1) write_text(folder / "trajectory.txt", poses);
+    write_text(folder / "intrinsics.json", intrinsics_text(k));
+}
+
+void write_ply(const std::filesystem::path& path, std::size_t count, const std::string& properties,
+               const std::string& bytes) {
+    write_text(path, "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                         std::to_string(count) +
+                         "\nproperty float x\nproperty float y\nproperty float z\n" + properties +
+                         "end_header\n" + bytes);
+}
+
+void append_place(std::string& bytes, float x, float y, float z) {
+    for (const float a : {x, y, z}) bytes.append(reinterpret_cast<const char*>(&a), sizeof a);
 }
 
 }  // namespace topple::scenes

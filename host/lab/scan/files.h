@@ -25,9 +25,18 @@ void make_folder(const std::filesystem::path& folder);
 // What `topple generate` makes, a scan with its truth.
 extern const io::OutputKind generated_scan;
 
-// The line of trajectory.txt for a pose, camera to world: t x y z qx qy qz qw.
-std::string trajectory_line(double time_s, const Mat4& pose);
 // What intrinsics.json holds.
 std::string intrinsics_text(const Intrinsics& k);
+
+// depth/NNNN.png, color/NNNN.png where there are colours, intrinsics.json and, of several frames,
+// trajectory.txt (TUM: time x y z qx qy qz qw, camera to world).
+void write_frames(const std::filesystem::path& folder, const Intrinsics& k,
+                  const std::vector<DepthFrame>& frames, double frames_per_s,
+                  const std::vector<std::vector<std::array<std::uint8_t, 3>>>& colour = {});
+
+// A binary .ply of `count` vertices x y z and whatever `properties` declare, as `bytes` holds them.
+void write_ply(const std::filesystem::path& path, std::size_t count, const std::string& properties,
+               const std::string& bytes);
+void append_place(std::string& bytes, float x, float y, float z);
 
 }  // namespace topple::scenes

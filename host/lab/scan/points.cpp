@@ -10,13 +10,14 @@ namespace {
 // Cubes are numbered along z, then y, then x; 17 bits each reach 600 m at 1 cm.
 constexpr std::uint64_t axis_bits = 17, axis_cells = std::uint64_t{1} << axis_bits;
 
-std::uint64_t along(double x, double edge) {
+std::uint64_t cell_of(double x, double edge) {
     const double cell = std::floor(x / edge) + static_cast<double>(axis_cells / 2);
     return static_cast<std::uint64_t>(std::clamp(cell, 1.0, static_cast<double>(axis_cells - 2)));
 }
 
 std::uint64_t cube(const Vec3& p, double edge) {
-    return (along(p[0], edge) * axis_cells + along(p[1], edge)) * axis_cells + along(p[2], edge);
+    return (cell_of(p[0], edge) * axis_cells + cell_of(p[1], edge)) * axis_cells +
+           cell_of(p[2], edge);
 }
 
 struct Keyed {

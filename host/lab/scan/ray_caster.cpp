@@ -16,25 +16,21 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 RayCaster::RayCaster(const std::vector<Part>& parts) : parts_(&parts), order_(parts.size()) {
     for (const Part& part : parts) {
         headings_.push_back(part.heading());
-        const auto box = part.bounds();
-        boxes_.push_back({box[0], box[1]});
+        boxes_.push_back(part.bounds());
     }
     std::iota(order_.begin(), order_.end(), 0u);
     if (!parts.empty()) build(0, parts.size());
 }
 
 std::uint32_t RayCaster::build(std::size_t first, std::size_t last) {
-    Box box{{unbounded, unbounded, unbounded}, {-unbounded, -unbounded, -unbounded}};
-    Box middles = box;
+    Bounds box = no_bounds(), middles = box;
+    const auto middle_of = [&](std::uint32_t part, std::size_t a) {
+        return boxes_[part][0][a] + boxes_[part][1][a];
+    };
     for (std::size_t k = first; k < last; ++k) {
-        const Box& one = boxes_[order_[k]];
-        for (std::size_t a = 0; a < 3; ++a) {
-            const double middle = one.low[a] + one.high[a];
-            box.low[a] = std::min(box.low[a], one.low[a]);
-            box.high[a] = std::max(box.high[a], one.high[a]);
-            middles.low[a] = std::min(middles.low[a], middle);
-            middles.high[a] = std::max(middles.high[a], middle);
-        }
+        const std::uint32_t part = order_[k];
+        extend(box, boxes_[part]);
+        extend(middles, Vec3{middle_of(part, 0), middle_of(part, 1), middle_of(part, 2)});
     }
     const auto node = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back(
@@ -42,11 +38,10 @@ std::uint32_t RayCaster::build(std::size_t first, std::size_t last) {
     if (last - first <= leaf_size) return node;
     std::size_t axis = 0;
     for (std::size_t a = 1; a < 3; ++a) {
-        if (middles.high[a] - middles.low[a] > middles.high[axis] - middles.low[axis]) axis = a;
+        if (middles[1][a] - middles[0][a] > middles[1][axis] - middles[0][axis]) axis = a;
     }
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
-        const double at = boxes_[a].low[axis] + boxes_[a].high[axis],
-                     bt = boxes_[b].low[axis] + boxes_[b].high[axis];
+        const double at = middle_of(a, axis), bt = middle_of(b, axis);
         return at != bt ? at < bt : a < b;
     };
     const std::size_t middle = first + (last - first) / 2;
@@ -60,11 +55,11 @@ std::uint32_t RayCaster::build(std::size_t first, std::size_t last) {
 }
 
 // Distance at which a ray enters a box, or infinity.
-double RayCaster::entry(const Box& box, const Vec3& origin, const Vec3& inverse) const {
+double RayCaster::entry(const Bounds& box, const Vec3& origin, const Vec3& inverse) const {
     double from = 0, to = unbounded;
     for (std::size_t a = 0; a < 3; ++a) {
-        const double t0 = (box.low[a] - origin[a]) * inverse[a],
-                     t1 = (box.high[a] - origin[a]) * inverse[a];
+        const double t0 = (box[0][a] - origin[a]) * inverse[a],
+                     t1 = (box[1][a] - origin[a]) * inverse[a];
         from = std::max(from, std::min(t0, t1));
         to = std::min(to, std::max(t0, t1));
     }
@@ -119,7 +114,7 @@ double RayCaster::clearance(const Vec3& p, double most) const {
         const Node& node = nodes_[at];
         bool near = true;
         for (std::size_t a = 0; a < 3; ++a)
-            near = near && p[a] > node.box.low[a] - most && p[a] < node.box.high[a] + most;
+            near = near && p[a] > node.box[0][a] - most && p[a] < node.box[1][a] + most;
         if (!near) continue;
         if (node.count == 0) {
             stack.push_back(at + 1);

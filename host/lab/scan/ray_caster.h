@@ -27,21 +27,18 @@ class RayCaster {
     const std::vector<Part>& parts() const { return *parts_; }
 
   private:
-    struct Box {
-        Vec3 low, high;
-    };
     // A leaf holds order_[first, first + count); an inner node's children are the next one and
     // `first`.
     struct Node {
-        Box box;
+        Bounds box;
         std::uint32_t first = 0, count = 0;
     };
     std::uint32_t build(std::size_t first, std::size_t last);
-    double entry(const Box& box, const Vec3& origin, const Vec3& inverse) const;
+    double entry(const Bounds& box, const Vec3& origin, const Vec3& inverse) const;
 
     const std::vector<Part>* parts_;
     std::vector<Part::Heading> headings_;
-    std::vector<Box> boxes_;
+    std::vector<Bounds> boxes_;
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };

@@ -42,8 +42,7 @@ RoomScan::RoomScan(const World& world, const std::vector<Vec3>& stations, unsign
     for (std::size_t k = 0; k < world.parts.size(); ++k) {
         const Part& part = world.parts[k];
         headings_.push_back(part.heading());
-        const auto box = part.bounds();
-        boxes_.push_back({box[0], box[1]});
+        boxes_.push_back(part.bounds());
         add_sheets(part, static_cast<std::int32_t>(k), sheets_);
         if (k == 0 || part.object == 0 || part.object != world.parts[k - 1].object) {
             groups_.push_back({boxes_[k], k, k + 1});
@@ -51,10 +50,7 @@ RoomScan::RoomScan(const World& world, const std::vector<Vec3>& stations, unsign
         }
         Group& group = groups_.back();
         group.last = k + 1;
-        for (std::size_t a = 0; a < 3; ++a) {
-            group.box.low[a] = std::min(group.box.low[a], box[0][a]);
-            group.box.high[a] = std::max(group.box.high[a], box[1][a]);
-        }
+        extend(group.box, boxes_[k]);
     }
     for (std::size_t k = 0; k < sheets_.size(); ++k) {
         if (faces_any(sheets_[k], stations_))
@@ -94,9 +90,9 @@ std::int32_t RoomScan::object(std::size_t patch) const {
 // Whether all within `radius` of p keeps its distance from all parts but one, none of it, or some.
 RoomScan::Room RoomScan::room_at(const Vec3& p, double radius, std::int32_t part) const {
     const double reach = radius + clearance;
-    const auto far = [&](const Box& box) {
+    const auto far = [&](const Bounds& box) {
         for (std::size_t a = 0; a < 3; ++a) {
-            if (p[a] < box.low[a] - reach || p[a] > box.high[a] + reach) return true;
+            if (p[a] < box[0][a] - reach || p[a] > box[1][a] + reach) return true;
         }
         return false;
     };
@@ -116,25 +112,25 @@ RoomScan::Room RoomScan::room_at(const Vec3& p, double radius, std::int32_t part
 // `last`: what blocked the view the last time, tried first.
 bool RoomScan::blocked(const Vec3& from, const Vec3& to, std::size_t& last) const {
     const Vec3 way = minus(to, from);
-    const double length = std::sqrt(dot(way, way));
-    const Vec3 d{way[0] / length, way[1] / length, way[2] / length};
+    const double distance = length(way);
+    const Vec3 d{way[0] / distance, way[1] / distance, way[2] / distance};
     const Vec3 inverse{1 / d[0], 1 / d[1], 1 / d[2]};
-    const auto meets = [&](const Box& box) {
-        double in = 0, out = length;
+    const auto meets = [&](const Bounds& box) {
+        double in = 0, out = distance;
         for (std::size_t a = 0; a < 3; ++a) {
             if (d[a] == 0) {
-                if (from[a] < box.low[a] || from[a] > box.high[a]) return false;
+                if (from[a] < box[0][a] || from[a] > box[1][a]) return false;
                 continue;
             }
-            const double t0 = (box.low[a] - from[a]) * inverse[a],
-                         t1 = (box.high[a] - from[a]) * inverse[a];
+            const double t0 = (box[0][a] - from[a]) * inverse[a],
+                         t1 = (box[1][a] - from[a]) * inverse[a];
             in = std::max(in, std::min(t0, t1));
             out = std::min(out, std::max(t0, t1));
         }
         return in <= out;
     };
     const auto stops = [&](std::size_t k) {
-        return meets(boxes_[k]) && world_.parts[k].hit(from, d, headings_[k]) < length;
+        return meets(boxes_[k]) && world_.parts[k].hit(from, d, headings_[k]) < distance;
     };
     if (stops(last)) return true;
     for (const Group& group : groups_) {
@@ -151,11 +147,10 @@ bool RoomScan::blocked(const Vec3& from, const Vec3& to, std::size_t& last) cons
 bool RoomScan::find_station(const Sheet::Place& place, std::vector<std::size_t>& last,
                             Seen& seen) const {
     const Vec3& p = place.point;
-    const Vec3 above{p[0] + lift * place.normal[0], p[1] + lift * place.normal[1],
-                     p[2] + lift * place.normal[2]};
+    const Vec3 above = along(p, lift, place.normal);
     for (std::size_t n = 0; n < stations_.size(); ++n) {
         const Vec3 way = minus(stations_[n], p);
-        if (dot(way, place.normal) < least_cosine * std::sqrt(dot(way, way))) continue;
+        if (dot(way, place.normal) < least_cosine * length(way)) continue;
         if (blocked(stations_[n], above, last[n])) continue;
         seen.station = static_cast<std::uint8_t>(n);
         seen.column =
@@ -179,7 +174,7 @@ void RoomScan::look(const Patch& patch, int depth, std::vector<std::size_t>& las
     for (const double u : patch.u) {
         for (const double v : patch.v) {
             const Vec3 way = minus(sheet.at(u, v).point, middle.point);
-            radius = std::max(radius, std::sqrt(dot(way, way)));
+            radius = std::max(radius, length(way));
         }
     }
     switch (room_at(middle.point, radius, sheet.part)) {
@@ -223,7 +218,7 @@ void RoomScan::sample(std::size_t patch, double noise_m, Random random,
             if (attempt == 8) break;
         }
         const Vec3 way = minus(point, station);
-        const double share = noise_m * random.normal() / std::sqrt(dot(way, way));
+        const double share = noise_m * random.normal() / length(way);
         for (std::size_t k = 0; k < 3; ++k) point[k] += share * way[k];
     }
 }

@@ -30,12 +30,9 @@ class RoomScan {
     void sample(std::size_t patch, double noise_m, Random random, std::span<Vec3> points) const;
 
   private:
-    struct Box {
-        Vec3 low, high;
-    };
     // Parts [first, last) that lie within one box: an object's, or one of the room's own.
     struct Group {
-        Box box;
+        Bounds box;
         std::size_t first, last;
     };
     struct Seen {
@@ -57,7 +54,7 @@ class RoomScan {
     const World& world_;
     const std::vector<Vec3> stations_;
     std::vector<Part::Heading> headings_;
-    std::vector<Box> boxes_;  // of parts
+    std::vector<Bounds> boxes_;  // of parts
     std::vector<Group> groups_;
     std::vector<Sheet> sheets_;
     std::vector<Seen> seen_;

@@ -2,49 +2,23 @@
 #include "lab/scan/scan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 
 #include "core/short_number.h"
 #include "core/thread_pool.h"
+#include "core/vectors.h"
 #include "lab/scan/smooth.h"
 #include "lab/scan/viewpoints.h"
+#include "lab/solids/rigid.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
 namespace {
 
 using std::numbers::pi;
-
-Vec3 moved(const Mat4& m, const Vec3& p) {
-    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3],
-            m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
-            m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
-}
-
-Mat4 product(const Mat4& a, const Mat4& b) {
-    Mat4 out{};
-    for (std::size_t r = 0; r < 4; ++r) {
-        for (std::size_t c = 0; c < 4; ++c) {
-            for (std::size_t k = 0; k < 4; ++k) out[4 * r + c] += a[4 * r + k] * b[4 * k + c];
-        }
-    }
-    return out;
-}
-
-Mat4 rigid(const std::array<double, 9>& r, const Vec3& t) {
-    return {r[0], r[1], r[2], t[0], r[3], r[4], r[5], t[1], r[6], r[7], r[8], t[2], 0, 0, 0, 1};
-}
-
-Mat4 inverse(const Mat4& m) {
-    Mat4 out = rigid({m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]}, {});
-    const Vec3 t = moved(out, {m[3], m[7], m[11]});
-    out[3] = -t[0];
-    out[7] = -t[1];
-    out[11] = -t[2];
-    return out;
-}
 
 // A few degrees of tilt, any heading and origin.
 Mat4 any_frame(const World& world, Random& random) {
@@ -67,6 +41,12 @@ Light any_light(Random& random) {
             random.uniform(0.4, 0.7),
             random.uniform(3, 9),
             random.uniform(0.8, 1.1)};
+}
+
+// Of a reading of z metres, in the camera's frame.
+Vec3 place_of(const Intrinsics& k, std::size_t pixel, double z) {
+    const double u = static_cast<double>(pixel % k.width), v = static_cast<double>(pixel / k.width);
+    return {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z};
 }
 
 struct Shot {
@@ -143,11 +123,8 @@ class Scanner {
         for (std::size_t at = 0; at < view.depth.size(); ++at) {
             const double z = view.depth[at];
             if (!(z > sensor.least_m && z < sensor.most_m) || view.cosine[at] < 0.12) continue;
-            const double u = static_cast<double>(at % k.width),
-                         v = static_cast<double>(at / k.width);
             const auto part = static_cast<std::size_t>(view.part[at]);
-            points.push_back({moved(pose, {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z}),
-                              world_.parts[part].object});
+            points.push_back({moved(pose, place_of(k, at, z)), world_.parts[part].object});
         }
         note(points);
     }
@@ -222,9 +199,7 @@ class Scanner {
         const Mat4 pose = best_view(world_, caster_, random_);
         scan_.world_to_scan = inverse(pose);
         shoot({pose}, scan_.intrinsics, any_sensor(scan_.intrinsics, random_),
-              [&](std::size_t, Shot& shot) {
-                  keep_frame({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, shot);
-              });
+              [&](std::size_t, Shot& shot) { keep_frame(identity, shot); });
         thin();
     }
 
@@ -246,10 +221,7 @@ class Scanner {
             for (std::size_t at = 0; at < shot.depth.size(); ++at) {
                 const double z = shot.depth[at];
                 if (z == 0) continue;
-                const double u = static_cast<double>(at % k.width),
-                             v = static_cast<double>(at / k.width);
-                all.push_back({moved(to_scan, {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z}),
-                               shot.view.colour[at]});
+                all.push_back({moved(to_scan, place_of(k, at, z)), shot.view.colour[at]});
             }
         });
         thin();
@@ -311,20 +283,16 @@ class Scanner {
                 const auto hit = caster_.cast(eye, d);
                 const double last = std::exchange(before, hit.part < 0 ? 0 : hit.distance);
                 if (hit.part < 0 || hit.distance < 0.4 || hit.distance > 25) continue;
-                const auto at = [&](double t) {
-                    return Vec3{eye[0] + t * d[0], eye[1] + t * d[1], eye[2] + t * d[2]};
-                };
                 const Part& part = world_.parts[static_cast<std::size_t>(hit.part)];
-                const Vec3 p = at(hit.distance), normal = part.normal(p);
+                const Vec3 p = along(eye, hit.distance, d), normal = part.normal(p);
                 points.push_back({p, part.object});
-                const double cosine =
-                    std::abs(normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2]);
+                const double cosine = std::abs(dot(normal, d));
                 if (random_.chance(drop) || random_.chance((0.12 - cosine) / 0.1)) continue;
                 double t = hit.distance + noise * random_.normal();
                 if (last > 0.4 && std::abs(last - hit.distance) > 0.05 && random_.chance(mixed))
                     t += random_.uniform() * (last - hit.distance);
-                scan_.cloud.push_back(
-                    {moved(scan_.world_to_scan, at(t)), light_.shade(part, normal, p, random_)});
+                scan_.cloud.push_back({moved(scan_.world_to_scan, along(eye, t, d)),
+                                       light_.shade(part, normal, p, random_)});
             }
         }
         note(points);
@@ -353,19 +321,8 @@ Scan scan(const World& world, const ScanOptions& options) {
 }
 
 const char* to_string(ScanKind kind) {
-    switch (kind) {
-        case ScanKind::walk:
-            return "walk";
-        case ScanKind::sparse:
-            return "sparse";
-        case ScanKind::cloud:
-            return "cloud";
-        case ScanKind::laser:
-            return "laser";
-        case ScanKind::single:
-            return "single";
-    }
-    return "walk";
+    constexpr std::array names{"walk", "sparse", "cloud", "laser", "single"};
+    return names[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace topple::scenes

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lab/scan/points.h"
+#include "lab/solids/rigid.h"
 #include "lab/solids/scene.h"
 
 // Scans of a World as scanners leave them: noise, gaps and tilt differ from seed to seed.
@@ -36,7 +37,7 @@ struct Scan {
     std::vector<ColouredPoint> cloud;                // in the scan's frame; of clouds only
     std::vector<LabelledPoint> truth;                // surfaces in view, in the scan's frame
     double truth_m = 0.01, building_truth_m = 0.03;  // edges of the cubes that hold one truth point
-    Mat4 world_to_scan{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    Mat4 world_to_scan = identity;
 };
 
 // Throws Error(usage) where no camera finds room in the world, or for options out of range.

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "lab/scan/files.h"
 #include "lab/scan/scan.h"
@@ -11,22 +9,9 @@
 namespace topple::scenes {
 namespace {
 
-// A binary .ply of records that the caller makes.
-template <class Record>
-void write_ply(const std::filesystem::path& path, const std::vector<Record>& records,
-               const std::string& properties, const std::string& bytes) {
-    write_text(path, "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                         std::to_string(records.size()) + "\n" + properties + "end_header\n" +
-                         bytes);
-}
-
-constexpr const char* xyz = "property float x\nproperty float y\nproperty float z\n";
-
 void append_place(std::string& bytes, const Vec3& p) {
-    for (const double a : p) {
-        const auto value = static_cast<float>(a);
-        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
+    scenes::append_place(bytes, static_cast<float>(p[0]), static_cast<float>(p[1]),
+                         static_cast<float>(p[2]));
 }
 
 void write_coloured(const std::filesystem::path& path, const std::vector<ColouredPoint>& points) {
@@ -35,9 +20,8 @@ void write_coloured(const std::filesystem::path& path, const std::vector<Coloure
         append_place(bytes, p.at);
         bytes.append(reinterpret_cast<const char*>(p.colour.data()), p.colour.size());
     }
-    write_ply(path, points,
-              std::string(xyz) + "property uchar red\nproperty uchar green\nproperty uchar blue\n",
-              bytes);
+    write_ply(path, points.size(),
+              "property uchar red\nproperty uchar green\nproperty uchar blue\n", bytes);
 }
 
 void write_labelled(const std::filesystem::path& path, const std::vector<LabelledPoint>& points) {
@@ -46,7 +30,7 @@ void write_labelled(const std::filesystem::path& path, const std::vector<Labelle
         append_place(bytes, p.at);
         bytes.append(reinterpret_cast<const char*>(&p.object), sizeof p.object);
     }
-    write_ply(path, points, std::string(xyz) + "property int object\n", bytes);
+    write_ply(path, points.size(), "property int object\n", bytes);
 }
 
 double rounded(double value) {
@@ -54,16 +38,15 @@ double rounded(double value) {
 }
 
 nlohmann::json box_of(const World& world, std::int32_t object) {
-    Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+    Bounds all = no_bounds();
     for (const Part& part : world.parts) {
         if (part.object != object) continue;
-        const auto box = part.bounds();
-        for (std::size_t a = 0; a < 3; ++a) {
-            low[a] = std::min(low[a], rounded(box[0][a]));
-            high[a] = std::max(high[a], rounded(box[1][a]));
-        }
+        Bounds box = part.bounds();
+        for (Vec3& corner : box)
+            for (double& a : corner) a = rounded(a);
+        extend(all, box);
     }
-    return {low, high};
+    return all;
 }
 
 nlohmann::json objects_json(const World& world, const Scan& scan) {
@@ -98,22 +81,6 @@ nlohmann::json objects_json(const World& world, const Scan& scan) {
         list.push_back(std::move(object));
     }
     return list;
-}
-
-void write_frames(const std::filesystem::path& folder, const Scan& scan) {
-    make_folder(folder / "depth");
-    make_folder(folder / "color");
-    std::string poses;
-    for (std::size_t n = 0; n < scan.frames.size(); ++n) {
-        std::ostringstream name;
-        name << std::setw(4) << std::setfill('0') << n << ".png";
-        const DepthFrame& frame = scan.frames[n];
-        write_depth_png(folder / "depth" / name.str(), scan.intrinsics.width, frame.depth);
-        write_colour_png(folder / "color" / name.str(), scan.intrinsics.width, scan.colour[n]);
-        poses += trajectory_line(static_cast<double>(n) / 3, frame.camera_to_world);
-    }
-    if (scan.frames.size() > 1) write_text(folder / "trajectory.txt", poses);
-    write_text(folder / "intrinsics.json", intrinsics_text(scan.intrinsics));
 }
 
 }  // namespace
@@ -154,7 +121,7 @@ void write_scan(const std::filesystem::path& folder, const World& world, const S
     if (scan.frames.empty()) {
         write_coloured(folder / "cloud.ply", scan.cloud);
     } else {
-        write_frames(folder, scan);
+        write_frames(folder, scan.intrinsics, scan.frames, 3, scan.colour);
     }
     write_labelled(folder / "truth.ply", scan.truth);
     const Mat4& m = scan.world_to_scan;

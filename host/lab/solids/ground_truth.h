@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 
 #include "lab/solids/scene.h"
 
@@ -13,8 +14,7 @@ namespace topple::scenes {
 // revolved. Throws Error(input) where it can't be written.
 void write_truth(const std::filesystem::path& path, const World& world);
 
-// Reads what write_truth wrote; keys that it does not know are ignored. Throws Error(input) where
-// the file is missing or breaks the format.
-World read_truth(const std::filesystem::path& path);
+// A part as it stands there, but for its ids.
+nlohmann::json part_json(const Part& part);
 
 }  // namespace topple::scenes

@@ -6,14 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "core/vectors.h"
+
 namespace topple::scenes {
 namespace {
 
 using solids::Frustum;
-
-Vec3 difference(const Vec3& a, const Vec3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 
 // A cone, a cylinder or a lying cylinder about its axis.
 Frustum frustum(const Part& part) {
@@ -54,13 +52,13 @@ solids::Profile outline(const Part& part) {
 }
 
 // How far the part reaches along each axis of the room from its center: least and greatest.
-std::array<Vec3, 2> reach(const Part& part) {
+Bounds reach(const Part& part) {
     if (part.shape == Shape::sphere) {
         const double r = part.size[0] / 2;
         return {Vec3{-r, -r, -r}, Vec3{r, r, r}};
     }
     const auto turned = columns(part.heading());
-    std::array<Vec3, 2> out{};
+    Bounds out{};
     for (std::size_t k = 0; k < 3; ++k) {
         if (is_boxy(part.shape)) {
             const double r = part.rounding;
@@ -83,23 +81,8 @@ std::array<Vec3, 2> reach(const Part& part) {
 }  // namespace
 
 const char* to_string(Shape shape) {
-    switch (shape) {
-        case Shape::box:
-            return "box";
-        case Shape::rounded_box:
-            return "rounded";
-        case Shape::cylinder:
-            return "cyl";
-        case Shape::lying_cylinder:
-            return "lying";
-        case Shape::sphere:
-            return "sph";
-        case Shape::cone:
-            return "cone";
-        case Shape::revolved:
-            return "revolved";
-    }
-    return "box";
+    constexpr std::array names{"box", "rounded", "cyl", "lying", "sph", "cone", "revolved"};
+    return names[static_cast<std::size_t>(shape)];
 }
 
 double Part::volume() const {
@@ -145,7 +128,7 @@ double Part::distance(const Vec3& p) const {
 }
 
 double Part::distance(const Vec3& p, const Heading& heading) const {
-    const Vec3 q = turn(*this, heading, difference(p, center));
+    const Vec3 q = turn(*this, heading, minus(p, center));
     switch (shape) {
         case Shape::box:
             return solids::box_distance(q, size);
@@ -176,8 +159,7 @@ Vec3 Part::normal(const Vec3& p) const {
 }
 
 double Part::hit(const Vec3& origin, const Vec3& direction, const Heading& heading) const {
-    const Vec3 o = turn(*this, heading, difference(origin, center)),
-               d = turn(*this, heading, direction);
+    const Vec3 o = turn(*this, heading, minus(origin, center)), d = turn(*this, heading, direction);
     switch (shape) {
         case Shape::box:
             return solids::box_hit(o, d, size);
@@ -213,7 +195,7 @@ double Part::bounding_radius() const {
     return most;
 }
 
-std::array<Vec3, 2> Part::bounds() const {
+Bounds Part::bounds() const {
     auto box = reach(*this);
     for (Vec3& corner : box) {
         for (std::size_t k = 0; k < 3; ++k) corner[k] += center[k];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "lab/solids/bounds.h"
 #include "lab/solids/solids.h"
 #include "topple/input.h"
 
@@ -56,8 +57,8 @@ struct Part {
     double hit(const Vec3& origin, const Vec3& direction, const Heading& heading) const;
     // Its own axes as unit vectors of the room's frame; bodies of revolution turn about the third.
     std::array<Vec3, 3> axes() const;
-    double bounding_radius() const;      // about center
-    std::array<Vec3, 2> bounds() const;  // axis-aligned in the room's frame: lowest, highest corner
+    double bounding_radius() const;  // about center
+    Bounds bounds() const;           // axis-aligned in the room's frame: lowest, highest corner
     double bottom() const { return bounds()[0][2]; }
     double top() const { return bounds()[1][2]; }
     Part hull() const;  // the part itself, or a concave one's convex hull

@@ -8,8 +8,6 @@
 #include <set>
 
 #include "lab/random.h"
-#include "lab/solids/ground_truth.h"
-#include "lab/temporary_folder.h"
 
 namespace topple::scenes {
 namespace {
@@ -226,22 +224,6 @@ TEST(VariedRoom, LeaningThingsTouchAWall) {
         }
     }
     EXPECT_GT(leaning, seeds / 3);
-}
-
-// All shapes and turns come back from the file of the truth.
-TEST(VariedRoom, TruthIsWrittenAndReadWhole) {
-    const World world = furnished_room({.seed = 4, .tilt_deg = 7, .varied = true});
-    const TemporaryFolder folder("topple_truth");
-    write_truth(folder.path() / "truth.json", world);
-    const World back = read_truth(folder.path() / "truth.json");
-    ASSERT_EQ(back.parts.size(), world.parts.size());
-    Random random(1);
-    for (std::size_t k = 0; k < world.parts.size(); ++k) {
-        EXPECT_DOUBLE_EQ(back.parts[k].volume(), world.parts[k].volume());
-        const Vec3 p{random.uniform(0, 5), random.uniform(0, 4), random.uniform(0, 2)};
-        EXPECT_NEAR(back.parts[k].distance(p), world.parts[k].distance(p), 1e-12);
-    }
-    EXPECT_EQ(back.support, world.support);
 }
 
 TEST_P(FurnishedRoom, TiltIsARotationByTheAngle) {

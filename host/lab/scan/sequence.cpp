@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <compare>
 
 #include "lab/scan/depth_camera.h"
+#include "lab/scan/files.h"
 #include "lab/scores/majority.h"
+#include "lab/solids/ground_truth.h"
+#include "lab/solids/rigid.h"
 
 namespace topple::scenes {
 namespace {
 
 struct Reading {
-    std::int64_t cell[3];
+    std::array<std::int64_t, 3> cell;
     std::uint32_t at;
+    auto operator<=>(const Reading&) const = default;
 };
 
 }  // namespace
@@ -27,9 +33,10 @@ void fuse(const CameraOptions& options, Sequence& sequence) {
             const double d = depth[at] / k.depth_scale;
             const double u = (static_cast<double>(at % k.width) - k.cx) / k.fx * d;
             const double v = (static_cast<double>(at / k.width) - k.cy) / k.fy * d;
-            x.push_back(static_cast<float>(pose[0] * u + pose[1] * v + pose[2] * d + pose[3]));
-            y.push_back(static_cast<float>(pose[4] * u + pose[5] * v + pose[6] * d + pose[7]));
-            z.push_back(static_cast<float>(pose[8] * u + pose[9] * v + pose[10] * d + pose[11]));
+            const Vec3 p = moved(pose, {u, v, d});
+            x.push_back(static_cast<float>(p[0]));
+            y.push_back(static_cast<float>(p[1]));
+            z.push_back(static_cast<float>(p[2]));
             label.push_back(sequence.part[n][at]);
         }
     }
@@ -43,27 +50,18 @@ void fuse(const CameraOptions& options, Sequence& sequence) {
     }
     std::vector<Reading> readings(x.size());
     for (std::size_t n = 0; n < x.size(); ++n) {
-        const float p[3] = {x[n], y[n], z[n]};
-        for (int a = 0; a < 3; ++a) {
-            readings[n].cell[a] = static_cast<std::int64_t>(std::floor(p[a] / options.fuse_m));
-        }
-        readings[n].at = static_cast<std::uint32_t>(n);
+        const auto cell = [&](float p) {
+            return static_cast<std::int64_t>(std::floor(p / options.fuse_m));
+        };
+        readings[n] = {{cell(x[n]), cell(y[n]), cell(z[n])}, static_cast<std::uint32_t>(n)};
     }
-    const auto same = [](const Reading& a, const Reading& b) {
-        return std::equal(a.cell, a.cell + 3, b.cell);
-    };
-    std::sort(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
-        for (int k3 = 0; k3 < 3; ++k3) {
-            if (a.cell[k3] != b.cell[k3]) return a.cell[k3] < b.cell[k3];
-        }
-        return a.at < b.at;
-    });
+    std::sort(readings.begin(), readings.end());
     std::vector<std::int32_t> labels;
     for (std::size_t first = 0; first < readings.size();) {
         std::size_t end = first;
         double sum[3] = {0, 0, 0};
         labels.clear();
-        for (; end < readings.size() && same(readings[first], readings[end]); ++end) {
+        for (; end < readings.size() && readings[end].cell == readings[first].cell; ++end) {
             const std::uint32_t at = readings[end].at;
             sum[0] += x[at];
             sum[1] += y[at];
@@ -79,6 +77,20 @@ void fuse(const CameraOptions& options, Sequence& sequence) {
         }
         first = end;
     }
+}
+
+void write_cloud(const std::filesystem::path& path, const PointCloud& cloud) {
+    std::string bytes;
+    for (std::size_t k = 0; k < cloud.size(); ++k)
+        append_place(bytes, cloud.x[k], cloud.y[k], cloud.z[k]);
+    write_ply(path, cloud.size(), "", bytes);
+}
+
+void write_sequence(const std::filesystem::path& folder, const World& world,
+                    const Sequence& sequence) {
+    write_frames(folder, sequence.intrinsics, sequence.frames, 30);
+    write_cloud(folder / "cloud.ply", sequence.cloud);
+    write_truth(folder / "truth.json", world);
 }
 
 }  // namespace topple::scenes
