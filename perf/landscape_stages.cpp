@@ -19,7 +19,7 @@ constexpr std::size_t primitives = 96, vertices = 128, groups = 1000, hulls = 10
 // Points on an ellipsoid of random half axes.
 std::vector<Vec3> shell(scenes::Random& random, std::size_t count, const Vec3& center) {
     Vec3 half{};
-    for (double& h : half) h = random.uniform(0.05, 0.3);
+    for (double& h : half) h = random(0.05, 0.3);
     std::vector<Vec3> out;
     while (out.size() < count) {
         Vec3 p{};
@@ -114,8 +114,7 @@ std::vector<Result> measure_landscapes(device::Device& device, unsigned runs) {
     std::vector<Vec3> center;
     std::vector<std::vector<Vec3>> sets;
     for (std::size_t p = 0; p < primitives; ++p) {
-        center.push_back(
-            {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(0, 1)});
+        center.push_back({random(-0.5, 0.5), random(-0.5, 0.5), random(0, 1)});
         sets.push_back(shell(random, vertices, center.back()));
     }
     const double directions = static_cast<double>(mesh.size());

@@ -25,7 +25,8 @@ class Random {
     constexpr std::uint64_t next() { return scatter(state_ += 0x9e3779b97f4a7c15ULL); }
     // In [0, 1).
     constexpr double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-    constexpr double uniform(double low, double high) { return low + (high - low) * uniform(); }
+    // In [low, high).
+    constexpr double operator()(double low, double high) { return low + (high - low) * uniform(); }
     // In [low, high], both included; the bias of the scaling is below 2^-32.
     constexpr int integer(int low, int high) {
         const auto span = static_cast<std::uint64_t>(high - low) + 1;

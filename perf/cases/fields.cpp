@@ -33,7 +33,7 @@ struct Map {
         for (std::uint32_t& s : solid)
             s = random.chance(0.03) ? static_cast<std::uint32_t>(random.integer(1, 255)) : 0u;
         primary.resize(std::size_t{directions} * width * width);
-        for (float& p : primary) p = static_cast<float>(random.uniform(0, 0.1));
+        for (float& p : primary) p = static_cast<float>(random(0, 0.1));
         std::vector<std::pair<int, int>> offsets;
         for (int dy = -12; dy <= 12; dy += 2) {
             for (int dx = -12; dx <= 12; dx += 2) {

@@ -90,7 +90,7 @@ Prepared group_landscape(device::Device& device) {
     Floats s(std::size_t{primitives} * padded), origin[3];
     for (std::uint32_t p = 0; p < primitives; ++p) {
         std::array<float, 3> half{};
-        for (float& h : half) h = static_cast<float>(random.uniform(0.02, 0.5));
+        for (float& h : half) h = static_cast<float>(random(0.02, 0.5));
         for (std::size_t n = 0; n < padded; ++n)
             s[std::size_t{p} * padded + n] = -box_height(d, n, half);
     }
@@ -99,7 +99,7 @@ Prepared group_landscape(device::Device& device) {
         const int members = random.integer(1, 8);
         for (int m = 0; m < members; ++m) {
             row.push_back(static_cast<std::uint32_t>(random.integer(0, primitives - 1)));
-            for (Floats& o : origin) o.push_back(static_cast<float>(random.uniform(-0.5, 0.5)));
+            for (Floats& o : origin) o.push_back(static_cast<float>(random(-0.5, 0.5)));
         }
         first.push_back(static_cast<std::uint32_t>(row.size()));
     }
@@ -152,7 +152,7 @@ Prepared steepest_descent(device::Device& device) {
     Floats energy(std::size_t{candidates} * padded, 3.0e38f);
     for (std::uint32_t c = 0; c < candidates; ++c) {
         std::array<float, 3> half{};
-        for (float& h : half) h = static_cast<float>(random.uniform(0.05, 0.5));
+        for (float& h : half) h = static_cast<float>(random(0.05, 0.5));
         for (std::size_t n = 0; n < d.used; ++n)
             energy[std::size_t{c} * padded + n] = box_height(d, n, half);
     }

@@ -85,7 +85,7 @@ Prepared voxel_normals(device::Device& device) {
     for (std::uint32_t n = 0; n < count; ++n) {
         cells[n] = static_cast<float>(random.integer(1, 9));
         for (std::uint32_t k = 1; k < 4; ++k) {
-            cells[k * count + n] = static_cast<float>(random.uniform(-0.4, 0.4));
+            cells[k * count + n] = static_cast<float>(random(-0.4, 0.4));
             query[(k - 1) * count + n] = cells[k * count + n];
         }
         for (std::uint32_t k = 4; k < 10; ++k) cells[k * count + n] = k < 7 ? 0.05f : 0.0f;
@@ -130,16 +130,11 @@ Prepared plane_mean(device::Device& device) {
     Random random(6);
     std::vector<float> planes(8 * std::size_t{count});
     for (std::uint32_t n = 0; n < count; ++n) {
-        const double x = random.uniform(-0.3, 0.3), y = random.uniform(-0.3, 0.3),
+        const double x = random(-0.3, 0.3), y = random(-0.3, 0.3),
                      length = std::sqrt(x * x + y * y + 1);
-        const double values[] = {random.uniform(0.1, 1),
-                                 random.uniform(-0.4, 0.4),
-                                 random.uniform(-0.4, 0.4),
-                                 random.uniform(-0.4, 0.4),
-                                 x / length,
-                                 y / length,
-                                 1 / length,
-                                 random.uniform(-0.2, 0.2)};
+        const double values[] = {random(0.1, 1),    random(-0.4, 0.4), random(-0.4, 0.4),
+                                 random(-0.4, 0.4), x / length,        y / length,
+                                 1 / length,        random(-0.2, 0.2)};
         for (std::uint32_t k = 0; k < 8; ++k) planes[k * count + n] = static_cast<float>(values[k]);
     }
     struct Buffers {

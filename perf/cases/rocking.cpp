@@ -22,9 +22,9 @@ struct ShakenBlocks {
         scenes::Random random(21);
         body.resize(7 * kinds);
         for (std::uint32_t n = 0; n < kinds; ++n) {
-            const double h = random.uniform(0.2, 1.0), b = h * random.uniform(0.1, 0.4);
-            const double values[] = {
-                b, b, h, std::sqrt((b * b + h * h) / 3), random.uniform(0.3, 0.7), 1e30, 1e30};
+            const double h = random(0.2, 1.0), b = h * random(0.1, 0.4);
+            const double values[] = {b,    b,   h, std::sqrt((b * b + h * h) / 3), random(0.3, 0.7),
+                                     1e30, 1e30};
             for (std::uint32_t p = 0; p < 7; ++p)
                 body[n + p * kinds] = static_cast<float>(values[p]);
         }
@@ -41,7 +41,7 @@ struct ShakenBlocks {
             first.push_back(first.back() + chunks);
         }
         shaking.resize(3 * records * steps);
-        for (float& a : shaking) a = static_cast<float>(random.uniform(-6, 6));
+        for (float& a : shaking) a = static_cast<float>(random(-6, 6));
         for (std::uint32_t c = 0; c < 3 * records * chunks; ++c)
             strongest.push_back(c < 2 * records * chunks ? 6.0f : -6.0f);
     }

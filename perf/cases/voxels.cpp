@@ -310,7 +310,7 @@ Prepared cell_share(device::Device& device) {
     std::vector<float> surface;
     for (std::uint32_t n = 0; n < patches * numbers; ++n) {
         const std::size_t at = n % numbers;
-        const double v = at < 3 ? random.uniform(-5, 5) : at < 7 ? random.uniform(-1, 1) : 0;
+        const double v = at < 3 ? random(-5, 5) : at < 7 ? random(-1, 1) : 0;
         surface.push_back(static_cast<float>(v));
     }
     Ints c[3];

@@ -11,7 +11,7 @@ namespace {
 
 Blueprint soap_bottle(Random& random) {
     Blueprint b("bottle");
-    const double w = random.uniform(0.04, 0.08), h = random.uniform(0.12, 0.24);
+    const double w = random(0.04, 0.08), h = random(0.12, 0.24);
     b.foot(b.rounded("body", 0, 0, 0, {w, 0.7 * w, h}, 0.012));
     b.cylinder("cap", 0, 0, h, 0.5 * w, 0.03);
     return b;
@@ -20,8 +20,7 @@ Blueprint soap_bottle(Random& random) {
 Stack towels(Random& random) {
     Stack stack;
     for (int k = random.integer(1, 4); k > 0; --k) {
-        const Vec3 size{random.uniform(0.24, 0.3), random.uniform(0.18, 0.24),
-                        random.uniform(0.03, 0.06)};
+        const Vec3 size{random(0.24, 0.3), random(0.18, 0.24), random(0.03, 0.06)};
         stack.emplace_back("towel");
         stack.back().foot(stack.back().rounded("towel", 0, 0, 0, size, 0.012));
     }
@@ -38,7 +37,7 @@ Blueprint paper_roll(Random&) {
 
 Blueprint make_basin(Random& random) {
     Blueprint b("basin");
-    const double w = random.uniform(0.4, 0.7), d = random.uniform(0.34, 0.5), h = 0.85, t = 0.03;
+    const double w = random(0.4, 0.7), d = random(0.34, 0.5), h = 0.85, t = 0.03;
     if (random.chance(0.5)) {
         b.cylinder("column", 0, d / 2, 0, 0.18, h - 0.16);
     } else {
@@ -56,12 +55,12 @@ Blueprint make_basin(Random& random) {
 
 Blueprint make_toilet(Random& random) {
     Blueprint b("toilet");
-    const double h = random.uniform(0.38, 0.44), r = random.uniform(0.17, 0.2);
+    const double h = random(0.38, 0.44), r = random(0.17, 0.2);
     b.revolved("bowl", 0, 0.42, 0, solid_within(smooth_side({0.7 * r, 0.6 * r, r, r}, h)));
     b.box("neck", 0, 0.2, 0, {0.2, 0.26, h - 0.02});
     b.cylinder("seat", 0, 0.42, h, 2.1 * r, 0.035);
     if (random.chance(0.7)) {
-        b.rounded("tank", 0, 0.09, h - 0.02, {random.uniform(0.34, 0.42), 0.17, 0.36}, 0.03);
+        b.rounded("tank", 0, 0.09, h - 0.02, {random(0.34, 0.42), 0.17, 0.36}, 0.03);
         if (random.chance(0.4)) b.leaning("lid", 0, 0.24, h + 0.03, {1.9 * r, 0.02, 0.38}, 0.15);
     }
     b.box("mount", 0, 0.05, 0.1, {0.2, 0.1, 0.2});
@@ -71,8 +70,8 @@ Blueprint make_toilet(Random& random) {
 Blueprint make_bath(Random& random) {
     if (random.chance(0.4)) {
         Blueprint b("shower");
-        const double w = random.uniform(0.75, 1.0);
-        b.box("tray", 0, w / 2, 0, {w, w, random.uniform(0.03, 0.12)});
+        const double w = random(0.75, 1.0);
+        b.box("tray", 0, w / 2, 0, {w, w, random(0.03, 0.12)});
         if (random.chance(0.7)) b.box("glass", w / 2 - 0.01, w / 2, 0.1, {0.02, w, 1.85});
         b.cylinder("column", 0, 0.03, 0.9, 0.025, 1.1);
         b.cylinder("head", 0, 0.15, 1.95, 0.2, 0.02);
@@ -80,8 +79,8 @@ Blueprint make_bath(Random& random) {
         return b;
     }
     Blueprint b("tub");
-    const double l = random.uniform(1.4, 1.8), w = random.uniform(0.65, 0.8),
-                 h = random.uniform(0.5, 0.62), t = random.uniform(0.05, 0.1);
+    const double l = random(1.4, 1.8), w = random(0.65, 0.8), h = random(0.5, 0.62),
+                 t = random(0.05, 0.1);
     b.box("floor", 0, w / 2, 0, {l, w, 0.15});
     for (const double s : {-1.0, 1.0}) {
         b.box("rim", s * (l - t) / 2, w / 2, 0.15, {t, w, h - 0.15});
@@ -93,10 +92,10 @@ Blueprint make_bath(Random& random) {
 
 Blueprint make_towel_rail(Random& random) {
     Blueprint b("towel rail");
-    const double w = random.uniform(0.4, 0.7);
+    const double w = random(0.4, 0.7);
     b.lying("rail", 0, 0.08, 0, w, 0.02);
     for (const double s : {-0.45, 0.45}) b.box("mount", s * w, 0.04, 0, {0.02, 0.08, 0.02});
-    const double cloth = w * random.uniform(0.4, 0.8), drop = random.uniform(0.3, 0.7);
+    const double cloth = w * random(0.4, 0.8), drop = random(0.3, 0.7);
     b.box("towel", 0, 0.095, 0.02 - drop, {cloth, 0.008, drop});
     b.box("towel", 0, 0.065, 0.02 - 0.8 * drop, {cloth, 0.008, 0.8 * drop});
     return b;

@@ -12,7 +12,7 @@ namespace {
 // A bar or a knob on a front whose outer face is at y.
 void add_handle(Blueprint& b, double x, double y, double z, bool upright, int style,
                 Random& random) {
-    const double length = random.uniform(0.1, 0.2);
+    const double length = random(0.1, 0.2);
     if (style == 0) {
         b.sphere("knob", x, y + 0.014, z - 0.014, 0.028);
         return;
@@ -46,7 +46,7 @@ void add_open_box(Blueprint& b, const CabinetPlace& p, Random& random) {
     b.box("back", p.x, p.back + 0.004, p.bottom, {w, 0.008, h});
     for (const double s : {-1.0, 1.0})
         b.box("side", p.x + s * (w - t) / 2, p.back + d / 2, p.bottom, {t, d, h});
-    const int boards = 2 + static_cast<int>(h / random.uniform(0.3, 0.5));
+    const int boards = 2 + static_cast<int>(h / random(0.3, 0.5));
     for (int k = 0; k < boards; ++k) {
         const double z = p.bottom + k * (h - t) / (boards - 1);
         const int board = b.box("board", p.x, p.back + d / 2, z, {w - 2 * t, d, t});
@@ -65,7 +65,7 @@ int add_cabinet(Blueprint& b, const CabinetPlace& p, Random& random, double open
         add_open_box(b, p, random);
         const int top = b.box("top", p.x, p.back + d / 2, p.bottom + h - 0.018, {w, d, 0.018});
         if (random.chance(0.6)) {  // a door ajar
-            const double side = random.chance(0.5) ? 1 : -1, angle = random.uniform(0.5, 1.8);
+            const double side = random.chance(0.5) ? 1 : -1, angle = random(0.5, 1.8);
             b.box("door", p.x + side * (w / 2 - std::cos(angle) * w / 2),
                   y + 0.012 + std::sin(angle) * w / 2, p.bottom + 0.003, {w, 0.02, h - 0.006},
                   -side * angle);
@@ -73,12 +73,12 @@ int add_cabinet(Blueprint& b, const CabinetPlace& p, Random& random, double open
         return top;
     }
     const int body = b.box("body", p.x, p.back + d / 2, p.bottom, {w, d, h});
-    const double gap = random.uniform(0.002, 0.005);
+    const double gap = random(0.002, 0.005);
     const int style = random.integer(0, 2);
     if (random.chance(0.4)) {
-        const int drawers = std::max(1, static_cast<int>(h / random.uniform(0.15, 0.35)));
+        const int drawers = std::max(1, static_cast<int>(h / random(0.15, 0.35)));
         for (int k = 0; k < drawers; ++k) {
-            const double out = random.chance(0.08) ? random.uniform(0.03, 0.2) : 0;
+            const double out = random.chance(0.08) ? random(0.03, 0.2) : 0;
             if (out > 0)
                 b.box("drawer", p.x, y + out / 2, p.bottom + k * h / drawers + 0.03,
                       {w - 0.05, out, 0.7 * h / drawers - 0.02});
@@ -100,19 +100,19 @@ int add_cabinet(Blueprint& b, const CabinetPlace& p, Random& random, double open
 
 Blueprint make_counter(Random& random, double length) {
     Blueprint b("counter");
-    const double d = random.uniform(0.52, 0.65), h = random.uniform(0.84, 0.95);
-    const double plinth = random.uniform(0.08, 0.15), t = random.uniform(0.025, 0.045);
+    const double d = random(0.52, 0.65), h = random(0.84, 0.95);
+    const double plinth = random(0.08, 0.15), t = random(0.025, 0.045);
     const double back = -d / 2, open = random.chance(0.3) ? 0.4 : 0.05;
     b.box("plinth", 0, back + d / 2 - 0.04, 0, {length, d - 0.08, plinth});
     double x = -length / 2;
     while (x < length / 2 - 0.05) {
-        double w = random.uniform(0.3, 0.8);
+        double w = random(0.3, 0.8);
         if (x + w > length / 2 - 0.3) w = length / 2 - x;
         add_cabinet(b, {x + w / 2, back, plinth, {w, d - 0.025, h - t - plinth}}, random, open);
         x += w;
     }
-    const double top = h - t, deep = d + random.uniform(0, 0.03), over = back + deep / 2;
-    const double sink = std::min(0.5, 0.3 * length), middle = random.uniform(-0.3, 0.3) * length;
+    const double top = h - t, deep = d + random(0, 0.03), over = back + deep / 2;
+    const double sink = std::min(0.5, 0.3 * length), middle = random(-0.3, 0.3) * length;
     if (length > 1.3 && random.chance(0.7)) {  // the worktop goes around a sink
         const double low = middle - sink / 2, high = middle + sink / 2, rim = 0.08;
         const int left =
@@ -128,11 +128,11 @@ Blueprint make_counter(Random& random, double length) {
     } else {
         const int one = b.box("worktop", 0, over, top, {length, deep, t});
         if (length > 1.0 && random.chance(0.5)) {
-            const double at = random.uniform(-0.25, 0.25) * length;
+            const double at = random(-0.25, 0.25) * length;
             b.box("hob", at, over, h, {0.56, 0.48, 0.008});
             for (const double sx : {-0.14, 0.14}) {
                 for (const double sy : {-0.11, 0.11})
-                    b.cylinder("ring", at + sx, over + sy, h, random.uniform(0.14, 0.2), 0.02);
+                    b.cylinder("ring", at + sx, over + sy, h, random(0.14, 0.2), 0.02);
             }
             const double half = (length / 2 + at - 0.3) / 2;
             b.surfaces.push_back(
@@ -142,16 +142,16 @@ Blueprint make_counter(Random& random, double length) {
         }
     }
     if (random.chance(0.4))
-        b.box("splashback", 0, back + 0.006, h, {length, 0.012, random.uniform(0.06, 0.5)});
+        b.box("splashback", 0, back + 0.006, h, {length, 0.012, random(0.06, 0.5)});
     return b;
 }
 
 Blueprint make_wall_cupboards(Random& random, double length) {
     Blueprint b("wall cabinet");
-    const double h = random.uniform(0.4, 0.9), d = random.uniform(0.28, 0.38);
+    const double h = random(0.4, 0.9), d = random(0.28, 0.38);
     double x = -length / 2;
     while (x < length / 2 - 0.05) {
-        double w = random.uniform(0.3, 0.8);
+        double w = random(0.3, 0.8);
         if (x + w > length / 2 - 0.3) w = length / 2 - x;
         add_cabinet(b, {x + w / 2, 0, 0, {w, d, h}}, random, 0.15);
         x += w;
@@ -161,21 +161,21 @@ Blueprint make_wall_cupboards(Random& random, double length) {
 
 Blueprint make_hood(Random& random) {
     Blueprint b("hood");
-    const double w = random.uniform(0.5, 0.9), d = 0.45;
+    const double w = random(0.5, 0.9), d = 0.45;
     b.box("body", 0, d / 2, 0, {w, d, 0.06});
     b.box("body", 0, 0.17, 0.06, {0.5 * w, 0.3, 0.12});
-    b.box("duct", 0, 0.14, 0.18, {0.26, 0.26, random.uniform(0.3, 0.5)});
+    b.box("duct", 0, 0.14, 0.18, {0.26, 0.26, random(0.3, 0.5)});
     return b;
 }
 
 Blueprint make_fridge(Random& random) {
     Blueprint b("fridge");
-    const double w = random.uniform(0.54, 0.75), d = random.uniform(0.52, 0.65);
-    const double h = random.uniform(0.85, 1.95), foot = 0.03;
+    const double w = random(0.54, 0.75), d = random(0.52, 0.65);
+    const double h = random(0.85, 1.95), foot = 0.03;
     const int body = b.box("body", 0, 0, foot, {w, d, h - foot});
     for (const auto [sx, sy] : corners)
         b.foot(b.cylinder("foot", sx * (w / 2 - 0.05), sy * (d / 2 - 0.05), 0, 0.04, foot));
-    const double split = h > 1.3 ? random.uniform(0.3, 0.7) * h : h;
+    const double split = h > 1.3 ? random(0.3, 0.7) * h : h;
     const double side = random.chance(0.5) ? 1 : -1;
     double from = foot + 0.02;
     for (const double to : {split, h}) {
@@ -195,8 +195,7 @@ Blueprint make_fridge(Random& random) {
 Blueprint make_appliance(Random& random) {
     const int which = random.integer(0, 2);
     Blueprint b(which == 0 ? "dishwasher" : which == 1 ? "washing machine" : "oven");
-    const double w = random.uniform(0.45, 0.62), d = random.uniform(0.5, 0.6),
-                 h = random.uniform(0.8, 0.92), foot = 0.02;
+    const double w = random(0.45, 0.62), d = random(0.5, 0.6), h = random(0.8, 0.92), foot = 0.02;
     const int body = b.box("body", 0, 0, foot, {w, d, h - foot});
     for (const double s : {-1.0, 1.0})
         b.foot(b.box("foot", s * (w / 2 - 0.04), 0, 0, {0.05, d - 0.06, foot}));
@@ -217,8 +216,8 @@ Blueprint make_appliance(Random& random) {
 
 Blueprint make_free_cupboard(Random& random) {
     Blueprint b("cupboard");
-    const double w = random.uniform(0.5, 1.2), d = random.uniform(0.32, 0.5),
-                 h = random.uniform(0.75, 1.9), leg = random.uniform(0.03, 0.15);
+    const double w = random(0.5, 1.2), d = random(0.32, 0.5), h = random(0.75, 1.9),
+                 leg = random(0.03, 0.15);
     for (const auto [sx, sy] : corners)
         b.foot(b.box("foot", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), 0, {0.05, 0.05, leg}));
     const int top = add_cabinet(b, {0, -d / 2, leg, {w, d, h - leg}}, random, 0.45);
@@ -236,7 +235,7 @@ void add_ring_handle(Blueprint& b, double radius, double z, double size) {
 
 Blueprint kettle(Random& random) {
     Blueprint b("kettle");
-    const double r = random.uniform(0.07, 0.1), h = random.uniform(0.15, 0.24);
+    const double r = random(0.07, 0.1), h = random(0.15, 0.24);
     b.foot(b.revolved("body", 0, 0, 0, solid_within(smooth_side({r, r, 0.8 * r, 0.6 * r}, h))));
     b.sphere("knob", 0, 0, h - 0.005, 0.03);
     b.box("handle", 0.75 * r + 0.05, 0, 0.9 * h, {0.14, 0.02, 0.02});
@@ -247,8 +246,8 @@ Blueprint kettle(Random& random) {
 
 Blueprint pan(Random& random) {
     Blueprint b("pan");
-    const double r = random.uniform(0.09, 0.15), h = random.uniform(0.05, 0.16);
-    b.feet = {b.revolved("body", 0, 0, 0, vessel_within({{0.9 * r, 0}, {r, h}}, 0.006, 0.006))};
+    const double r = random(0.09, 0.15), h = random(0.05, 0.16);
+    b.foot(b.revolved("body", 0, 0, 0, vessel_within({{0.9 * r, 0}, {r, h}}, 0.006, 0.006)));
     if (random.chance(0.5)) {
         b.box("handle", r + 0.09, 0, h - 0.03, {0.2, 0.025, 0.015});
     } else {
@@ -260,35 +259,32 @@ Blueprint pan(Random& random) {
 
 Blueprint handled_mug(Random& random) {
     Blueprint b("mug");
-    const double r = random.uniform(0.035, 0.048), h = random.uniform(0.08, 0.12);
-    b.feet = {b.revolved("body", 0, 0, 0, vessel_within({{r, 0}, {r * 1.05, h}}, 0.005, 0.006))};
+    const double r = random(0.035, 0.048), h = random(0.08, 0.12);
+    b.foot(b.revolved("body", 0, 0, 0, vessel_within({{r, 0}, {r * 1.05, h}}, 0.005, 0.006)));
     add_ring_handle(b, r, 0.5 * h, 0.032);
     return b;
 }
 
 Blueprint jar(Random& random) {
     Blueprint b("jar");
-    const double r = random.uniform(0.035, 0.07), h = random.uniform(0.08, 0.24);
+    const double r = random(0.035, 0.07), h = random(0.08, 0.24);
     b.foot(b.cylinder("glass", 0, 0, 0, 2 * r, h));
-    b.cylinder("lid", 0, 0, h, 1.9 * r, random.uniform(0.015, 0.03));
+    b.cylinder("lid", 0, 0, h, 1.9 * r, random(0.015, 0.03));
     return b;
 }
 
 Blueprint food_box(Random& random) {
     Blueprint b("food box");
-    b.feet = {
-        b.box("box", 0, 0, 0,
-              {random.uniform(0.08, 0.22), random.uniform(0.04, 0.12), random.uniform(0.1, 0.32)})};
+    b.foot(b.box("box", 0, 0, 0, {random(0.08, 0.22), random(0.04, 0.12), random(0.1, 0.32)}));
     return b;
 }
 
 Stack plates(Random& random) {
     Stack stack;
-    const double r = random.uniform(0.08, 0.14);
+    const double r = random(0.08, 0.14);
     for (int k = random.integer(1, 3); k > 0; --k) {
         Blueprint b("plate");
-        b.feet = {
-            b.revolved("plate", 0, 0, 0, solid_within({{0.6 * r, 0}, {r, 0.02}, {r, 0.024}}))};
+        b.foot(b.revolved("plate", 0, 0, 0, solid_within({{0.6 * r, 0}, {r, 0.02}, {r, 0.024}})));
         stack.push_back(std::move(b));
     }
     return stack;
@@ -296,17 +292,15 @@ Stack plates(Random& random) {
 
 Blueprint board_flat(Random& random) {
     Blueprint b("chopping board");
-    b.feet = {
-        b.box("board", 0, 0, 0,
-              {random.uniform(0.25, 0.45), random.uniform(0.16, 0.3), random.uniform(0.01, 0.03)})};
+    b.foot(b.box("board", 0, 0, 0, {random(0.25, 0.45), random(0.16, 0.3), random(0.01, 0.03)}));
     return b;
 }
 
 Blueprint toaster(Random& random) {
     Blueprint b(random.chance(0.5) ? "microwave" : "toaster");
     const bool big = b.name == "microwave";
-    const Vec3 size = big ? Vec3{random.uniform(0.42, 0.52), 0.34, 0.27}
-                          : Vec3{random.uniform(0.24, 0.36), 0.17, 0.2};
+    const Vec3 size =
+        big ? Vec3{random(0.42, 0.52), 0.34, 0.27} : Vec3{random(0.24, 0.36), 0.17, 0.2};
     for (const double s : {-1.0, 1.0})
         b.foot(b.box("foot", s * 0.4 * size[0], 0, 0, {0.03, 0.8 * size[1], 0.012}));
     b.rounded("body", 0, 0, 0.012, size, 0.015);

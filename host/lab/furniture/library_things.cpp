@@ -19,38 +19,38 @@ struct BookPlace {
 std::vector<int> add_books(Blueprint& b, const BookPlace& p, Random& random) {
     std::vector<int> lowest;
     const bool series = random.chance(0.35);
-    const double least = series ? 0.97 : random.uniform(0.55, 0.9);
-    const double even = random.uniform(0.02, 0.06);
-    const double tall = p.height * random.uniform(0.75, 0.99);
+    const double least = series ? 0.97 : random(0.55, 0.9);
+    const double even = random(0.02, 0.06);
+    const double tall = p.height * random(0.75, 0.99);
     const auto put = [&](double x, double z, const Vec3& size) {
-        const double in = p.flush ? 0 : random.uniform(0, 0.02);
+        const double in = p.flush ? 0 : random(0, 0.02);
         return b.box("volume", x, p.front - p.sign * (in + size[1] / 2), z, size);
     };
     for (double x = p.from; x < p.to;) {
         if (random.chance(0.08)) {  // some lie
-            const double wide = random.uniform(0.14, 0.3);
+            const double wide = random(0.14, 0.3);
             if (x + wide > p.to) break;
             double z = 0;
             for (int k = random.integer(1, 5); k > 0; --k) {
-                const double t = random.uniform(0.015, 0.05);
+                const double t = random(0.015, 0.05);
                 if (z + t > tall) break;
                 const int book =
-                    put(x + wide / 2, p.bottom + z, {wide, random.uniform(0.7, 0.9) * p.depth, t});
+                    put(x + wide / 2, p.bottom + z, {wide, random(0.7, 0.9) * p.depth, t});
                 if (z == 0) lowest.push_back(book);
                 z += t;
             }
             x += wide + 0.002;
             continue;
         }
-        const double t = series ? even : random.uniform(0.015, 0.06);
+        const double t = series ? even : random(0.015, 0.06);
         if (x + t > p.to) break;
         if (random.uniform() > p.full) {
-            x += random.uniform(0.5, 4) * t;
+            x += random(0.5, 4) * t;
             continue;
         }
-        const double deep = p.depth * (p.flush ? 0.9 : random.uniform(0.7, 0.9));
-        lowest.push_back(put(x + t / 2, p.bottom, {t, deep, tall * random.uniform(least, 1)}));
-        x += t + random.uniform(0.0002, 0.002);
+        const double deep = p.depth * (p.flush ? 0.9 : random(0.7, 0.9));
+        lowest.push_back(put(x + t / 2, p.bottom, {t, deep, tall * random(least, 1)}));
+        x += t + random(0.0002, 0.002);
     }
     return lowest;
 }
@@ -59,14 +59,14 @@ std::vector<int> add_books(Blueprint& b, const BookPlace& p, Random& random) {
 
 BookcaseMake any_bookcase_make(Random& random, double most_height) {
     BookcaseMake m{};
-    m.width = random.uniform(0.6, 1.5);
-    m.depth = random.uniform(0.22, 0.42);
-    m.height = std::min(most_height, random.uniform(1.2, 2.4));
-    m.shelves = std::max(2, static_cast<int>(m.height / random.uniform(0.28, 0.42)));
+    m.width = random(0.6, 1.5);
+    m.depth = random(0.22, 0.42);
+    m.height = std::min(most_height, random(1.2, 2.4));
+    m.shelves = std::max(2, static_cast<int>(m.height / random(0.28, 0.42)));
     m.two_sided = random.chance(0.5);
     m.back = random.chance(0.8);
     m.one = random.chance(0.5);
-    m.full = random.chance(0.5) ? 1 : random.uniform(0.3, 0.98);
+    m.full = random.chance(0.5) ? 1 : random(0.3, 0.98);
     m.flush = random.chance(0.6);
     return m;
 }
@@ -107,7 +107,7 @@ Blueprint make_case_of_books(Random& random, const BookcaseMake& m) {
 Blueprint make_books(Random& random, double length, double height, double depth, bool flush) {
     Blueprint b("books");
     b.pile = true;
-    const double full = random.chance(0.6) ? 1 : random.uniform(0.5, 0.98);
+    const double full = random.chance(0.6) ? 1 : random(0.5, 0.98);
     b.feet = add_books(b, {-length / 2, length / 2, depth / 2, 0, height, depth, 1, flush, full},
                        random);
     if (b.parts.empty()) b.foot(b.box("volume", 0, 0, 0, {length, 0.8 * depth, 0.8 * height}));
@@ -116,12 +116,11 @@ Blueprint make_books(Random& random, double length, double height, double depth,
 
 Blueprint make_service_desk(Random& random) {
     Blueprint b("desk");
-    const double w = random.uniform(1.2, 2.6), d = random.uniform(0.55, 0.85),
-                 h = random.uniform(0.7, 0.95), t = 0.03;
+    const double w = random(1.2, 2.6), d = random(0.55, 0.85), h = random(0.7, 0.95), t = 0.03;
     const int top = b.box("tabletop", 0, 0, h - t, {w, d, t});
     for (const double s : {-1.0, 1.0})
         b.foot(b.box("cheek", s * (w / 2 - 0.03), 0, 0, {0.04, d, h - t}));
-    const double rise = random.chance(0.6) ? random.uniform(0.12, 0.35) : 0;
+    const double rise = random.chance(0.6) ? random(0.12, 0.35) : 0;
     b.foot(b.box("panel", 0, -d / 2 - 0.0125, 0, {w, 0.025, h + rise}));
     if (rise > 0) b.box("ledge", 0, -d / 2 + 0.06, h + rise, {w, 0.3, 0.025});
     b.surfaces.push_back({top, 0, 0.12, w / 2 - 0.05, d / 2 - 0.16, 0.8, "table"});

@@ -8,9 +8,9 @@ namespace topple::scenes {
 
 Blueprint make_stacking_chair(Random& random) {
     Blueprint b("chair");
-    const double w = random.uniform(0.4, 0.52), d = random.uniform(0.38, 0.48),
-                 h = random.uniform(0.42, 0.48), tube = random.uniform(0.018, 0.028);
-    const double lean = random.uniform(0.05, 0.25), high = random.uniform(0.28, 0.45);
+    const double w = random(0.4, 0.52), d = random(0.38, 0.48), h = random(0.42, 0.48),
+                 tube = random(0.018, 0.028);
+    const double lean = random(0.05, 0.25), high = random(0.28, 0.45);
     b.rounded("seat", 0, 0, h - 0.03, {w, d, 0.03}, 0.012);
     const bool sled = random.chance(0.4);
     for (const double s : {-1.0, 1.0}) {
@@ -42,8 +42,7 @@ Blueprint make_stacking_chair(Random& random) {
 
 Blueprint make_lectern(Random& random) {
     Blueprint b("lectern");
-    const double w = random.uniform(0.45, 0.8), d = random.uniform(0.35, 0.55),
-                 h = random.uniform(0.95, 1.15);
+    const double w = random(0.45, 0.8), d = random(0.35, 0.55), h = random(0.95, 1.15);
     if (random.chance(0.6)) {
         b.foot(b.box("body", 0, 0, 0, {w, d, h}));
     } else {
@@ -56,7 +55,7 @@ Blueprint make_lectern(Random& random) {
 
 Blueprint make_wall_board(Random& random, double length) {
     Blueprint b("board");
-    const double h = random.uniform(0.8, 1.3), t = random.uniform(0.015, 0.04);
+    const double h = random(0.8, 1.3), t = random(0.015, 0.04);
     b.box("board", 0, 0, 0, {length, t, h});
     for (const double z : {0.0, h - 0.03})
         b.box("rim", 0, 0.006, z, {length + 0.02, t + 0.012, 0.03});
@@ -70,7 +69,7 @@ Blueprint make_wall_board(Random& random, double length) {
 
 Blueprint make_projection_screen(Random& random, double length) {
     Blueprint b("screen");
-    const double h = random.uniform(0.6, 0.8) * length;
+    const double h = random(0.6, 0.8) * length;
     b.box("case", 0, 0.05, h, {length + 0.12, 0.1, 0.1});
     b.box("cloth", 0, 0.05, 0.02, {length, 0.004, h});
     b.lying("bar", 0, 0.05, 0, length, 0.025);
@@ -79,8 +78,7 @@ Blueprint make_projection_screen(Random& random, double length) {
 
 Blueprint make_board_on_wheels(Random& random) {
     Blueprint b("board");
-    const double w = random.uniform(0.9, 1.9), low = random.uniform(0.6, 0.85),
-                 h = random.uniform(0.9, 1.2);
+    const double w = random(0.9, 1.9), low = random(0.6, 0.85), h = random(0.9, 1.2);
     for (const double s : {-1.0, 1.0}) {
         b.foot(b.box("foot", s * (w / 2 + 0.02), 0, 0, {0.04, 0.55, 0.06}));
         b.box("post", s * (w / 2 + 0.02), 0, 0.06, {0.04, 0.04, low + h - 0.06});

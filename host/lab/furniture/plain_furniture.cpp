@@ -28,20 +28,20 @@ void four_legs(Blueprint& b, Random& random, int top, double w, double d, double
 Blueprint make_table(Random& random) {
     Blueprint b("table");
     const bool low = random.chance(0.2);  // a coffee table
-    const double w = random.uniform(0.9, 1.7), d = random.uniform(0.55, 0.85);
-    const double h = low ? random.uniform(0.36, 0.48) : random.uniform(0.68, 0.79);
-    const double t = random.uniform(0.025, 0.05), leg = random.uniform(0.045, 0.08);
+    const double w = random(0.9, 1.7), d = random(0.55, 0.85);
+    const double h = low ? random(0.36, 0.48) : random(0.68, 0.79);
+    const double t = random(0.025, 0.05), leg = random(0.045, 0.08);
     const int top = b.box("tabletop", 0, 0, h - t, {w, d, t});
-    four_legs(b, random, top, w, d, h - t, random.uniform(0, 0.08), leg);
+    four_legs(b, random, top, w, d, h - t, random(0, 0.08), leg);
     b.stand_on(top, over_table, "table");
     return b;
 }
 
 Blueprint make_pedestal_table(Random& random) {
     Blueprint b("table");
-    const double d = random.uniform(0.65, 1.05), h = random.uniform(0.68, 0.78), t = 0.035;
-    const double foot = 0.035, column = random.uniform(0.08, 0.14);
-    const int base = b.foot(b.cylinder("foot", 0, 0, 0, random.uniform(0.4, 0.55), foot));
+    const double d = random(0.65, 1.05), h = random(0.68, 0.78), t = 0.035;
+    const double foot = 0.035, column = random(0.08, 0.14);
+    const int base = b.foot(b.cylinder("foot", 0, 0, 0, random(0.4, 0.55), foot));
     const int middle = b.cylinder("column", 0, 0, foot, column, h - t - foot);
     const int top = random.chance(0.6) ? b.cylinder("tabletop", 0, 0, h - t, d, t)
                                        : b.box("tabletop", 0, 0, h - t, {d, d, t});
@@ -54,14 +54,14 @@ Blueprint make_pedestal_table(Random& random) {
 // Panels instead of legs, and often drawers under one end.
 Blueprint make_desk(Random& random) {
     Blueprint b("desk");
-    const double w = random.uniform(1.1, 1.6), d = random.uniform(0.6, 0.8);
-    const double h = random.uniform(0.70, 0.76), t = 0.03, panel = 0.03;
+    const double w = random(1.1, 1.6), d = random(0.6, 0.8);
+    const double h = random(0.70, 0.76), t = 0.03, panel = 0.03;
     const int top = b.box("tabletop", 0, 0, h - t, {w, d, t});
     const int left =
         b.join(top, b.box("panel", -w / 2 + panel / 2, 0, 0, {panel, d - 0.04, h - t}));
     int right;
     if (random.chance(0.5)) {
-        const double drawers = random.uniform(0.32, 0.42);
+        const double drawers = random(0.32, 0.42);
         right = b.box("drawers", w / 2 - drawers / 2, 0, 0, {drawers, d - 0.06, h - t});
     } else {
         right = b.box("panel", w / 2 - panel / 2, 0, 0, {panel, d - 0.04, h - t});
@@ -82,15 +82,14 @@ Blueprint make_desk(Random& random) {
 
 Blueprint make_chair(Random& random) {
     Blueprint b("chair");
-    const double w = random.uniform(0.40, 0.48), d = random.uniform(0.40, 0.47);
-    const double h = random.uniform(0.42, 0.48), t = random.uniform(0.03, 0.06);
+    const double w = random(0.40, 0.48), d = random(0.40, 0.47);
+    const double h = random(0.42, 0.48), t = random(0.03, 0.06);
     const int seat = b.box("seat", 0, 0, h - t, {w, d, t});
-    four_legs(b, random, seat, w, d, h - t, 0.005, random.uniform(0.035, 0.05));
+    four_legs(b, random, seat, w, d, h - t, 0.005, random(0.035, 0.05));
     if (random.chance(0.6)) {
-        b.join(seat, b.box("back", 0, -d / 2 + 0.02, h, {w, 0.04, random.uniform(0.36, 0.48)}));
+        b.join(seat, b.box("back", 0, -d / 2 + 0.02, h, {w, 0.04, random(0.36, 0.48)}));
     } else {  // two posts with a board across
-        const double post = 0.035, up = random.uniform(0.22, 0.28),
-                     board = random.uniform(0.14, 0.2);
+        const double post = 0.035, up = random(0.22, 0.28), board = random(0.14, 0.2);
         const int rest = b.box("back", 0, -d / 2 + 0.02, h + up, {w, 0.03, board});
         for (const double sx : {-1.0, 1.0}) {
             const int p = b.join(
@@ -105,8 +104,8 @@ Blueprint make_chair(Random& random) {
 
 Blueprint make_stool(Random& random) {
     Blueprint b("stool");
-    const double d = random.uniform(0.28, 0.38), t = 0.035;
-    const double h = random.chance(0.3) ? random.uniform(0.60, 0.72) : random.uniform(0.38, 0.48);
+    const double d = random(0.28, 0.38), t = 0.035;
+    const double h = random.chance(0.3) ? random(0.60, 0.72) : random(0.38, 0.48);
     const int seat = b.cylinder("seat", 0, 0, h - t, d, t);
     if (random.chance(0.3)) {
         const int column = b.join(seat, b.cylinder("column", 0, 0, 0.03, 0.06, h - t - 0.03));
@@ -124,10 +123,10 @@ Blueprint make_stool(Random& random) {
 
 Blueprint make_bench(Random& random) {
     Blueprint b("bench");
-    const double w = random.uniform(0.9, 1.5), d = random.uniform(0.28, 0.38);
-    const double h = random.uniform(0.40, 0.47), t = random.uniform(0.035, 0.06);
+    const double w = random(0.9, 1.5), d = random(0.28, 0.38);
+    const double h = random(0.40, 0.47), t = random(0.035, 0.06);
     const int slab = b.box("slab", 0, 0, h - t, {w, d, t});
-    const double x = w * random.uniform(0.32, 0.45);
+    const double x = w * random(0.32, 0.45);
     for (const double sx : {-1.0, 1.0}) {
         b.foot(b.join(slab, b.box("support", sx * x, 0, 0, {0.05, d * 0.9, h - t})));
     }
@@ -137,12 +136,12 @@ Blueprint make_bench(Random& random) {
 
 Blueprint make_shelf(Random& random) {
     Blueprint b("shelf");
-    const double w = random.uniform(0.7, 1.15), d = random.uniform(0.26, 0.38);
-    const double h = random.uniform(0.9, 1.9), t = random.uniform(0.018, 0.03);
+    const double w = random(0.7, 1.15), d = random(0.26, 0.38);
+    const double h = random(0.9, 1.9), t = random(0.018, 0.03);
     const int left = b.box("side", -w / 2 + t / 2, 0, 0, {t, d, h});
     const int right = b.box("side", w / 2 - t / 2, 0, 0, {t, d, h});
     b.feet = {left, right};
-    const int count = std::max(3, static_cast<int>(h / random.uniform(0.33, 0.45)) + 1);
+    const int count = std::max(3, static_cast<int>(h / random(0.33, 0.45)) + 1);
     const double low = 0.06, pitch = (h - low - t) / (count - 1);
     const bool closed = random.chance(0.5);  // with a back panel
     const double back = closed ? 0.012 : 0;
@@ -166,9 +165,8 @@ Blueprint make_shelf(Random& random) {
 Blueprint make_dresser(Random& random) {
     Blueprint b("dresser");
     const bool small = random.chance(0.4);  // a night stand
-    const double w = small ? random.uniform(0.38, 0.5) : random.uniform(0.7, 1.2);
-    const double d = random.uniform(0.36, 0.5),
-                 h = small ? random.uniform(0.4, 0.6) : random.uniform(0.7, 1.1);
+    const double w = small ? random(0.38, 0.5) : random(0.7, 1.2);
+    const double d = random(0.36, 0.5), h = small ? random(0.4, 0.6) : random(0.7, 1.1);
     const double plinth = 0.06, t = 0.03;
     const int foot = b.foot(b.box("plinth", 0, -0.02, 0, {w - 0.06, d - 0.08, plinth}));
     const int body = b.join(foot, b.box("body", 0, 0, plinth, {w, d, h - plinth - t}));
@@ -180,13 +178,13 @@ Blueprint make_dresser(Random& random) {
 Blueprint make_sofa(Random& random) {
     Blueprint b("sofa");
     const bool armchair = random.chance(0.3);
-    const double w = armchair ? random.uniform(0.75, 0.95) : random.uniform(1.4, 2.1);
-    const double d = random.uniform(0.75, 0.92), h = random.uniform(0.38, 0.46);
-    const double arm = random.uniform(0.12, 0.2), back = random.uniform(0.14, 0.22);
+    const double w = armchair ? random(0.75, 0.95) : random(1.4, 2.1);
+    const double d = random(0.75, 0.92), h = random(0.38, 0.46);
+    const double arm = random(0.12, 0.2), back = random(0.14, 0.22);
     const int seat = b.foot(b.box("seat", 0, 0, 0, {w, d, h}));
     const int rest =
-        b.join(seat, b.box("back", 0, -d / 2 + back / 2, h, {w, back, random.uniform(0.32, 0.45)}));
-    const double up = random.uniform(0.15, 0.25);
+        b.join(seat, b.box("back", 0, -d / 2 + back / 2, h, {w, back, random(0.32, 0.45)}));
+    const double up = random(0.15, 0.25);
     for (const double sx : {-1.0, 1.0}) {
         const int a =
             b.join(seat, b.box("arm", sx * (w - arm) / 2, back / 2, h, {arm, d - back, up}));
@@ -199,11 +197,10 @@ Blueprint make_sofa(Random& random) {
 
 Blueprint make_bed(Random& random) {
     Blueprint b("bed");
-    const double w = random.uniform(0.95, 1.5), d = random.uniform(1.9, 2.05),
-                 h = random.uniform(0.42, 0.55);
+    const double w = random(0.95, 1.5), d = random(1.9, 2.05), h = random(0.42, 0.55);
     const int frame = b.box("frame", 0, 0, 0, {w, d, h});
-    const int head = b.join(frame, b.box("headboard", 0, -d / 2 - 0.025, 0,
-                                         {w + 0.06, 0.05, random.uniform(0.85, 1.1)}));
+    const int head = b.join(
+        frame, b.box("headboard", 0, -d / 2 - 0.025, 0, {w + 0.06, 0.05, random(0.85, 1.1)}));
     b.feet = {frame, head};
     b.surfaces.push_back({frame, 0, -d / 2 + 0.35, w / 2 - 0.05, 0.28, 0.4, "bed"});
     return b;
@@ -211,8 +208,7 @@ Blueprint make_bed(Random& random) {
 
 Blueprint make_wall_cabinet(Random& random) {
     Blueprint b("wall cabinet");
-    const double w = random.uniform(0.6, 1.1), d = random.uniform(0.26, 0.36),
-                 h = random.uniform(0.4, 0.7);
+    const double w = random(0.6, 1.1), d = random(0.26, 0.36), h = random(0.4, 0.7);
     const int body = b.box("cabinet", 0, 0, 0, {w, d, h});
     if (random.chance(0.5)) {  // two doors that stand proud of the body
         for (const double sx : {-1.0, 1.0}) {
@@ -226,8 +222,7 @@ Blueprint make_wall_cabinet(Random& random) {
 
 Blueprint make_wall_shelf(Random& random) {
     Blueprint b("wall shelf");
-    const int board =
-        b.box("board", 0, 0, 0, {random.uniform(0.6, 1.1), random.uniform(0.2, 0.26), 0.03});
+    const int board = b.box("board", 0, 0, 0, {random(0.6, 1.1), random(0.2, 0.26), 0.03});
     b.wall_parts = {board};
     b.stand_on(board, 0.35, "wall-shelf");
     return b;
@@ -235,57 +230,51 @@ Blueprint make_wall_shelf(Random& random) {
 
 Blueprint make_floor_lamp(Random& random) {
     Blueprint b("floor lamp");
-    const double base = random.uniform(0.26, 0.34), pole = random.uniform(1.15, 1.4),
-                 shade = random.uniform(0.22, 0.3);
+    const double base = random(0.26, 0.34), pole = random(1.15, 1.4), shade = random(0.22, 0.3);
     const int foot = b.foot(b.cylinder("base", 0, 0, 0, base, 0.03));
     const int stem = b.join(foot, b.cylinder("pole", 0, 0, 0.03, 0.035, pole));
-    b.join(stem, b.cone("shade", 0, 0, 0.03 + pole, random.uniform(0.32, 0.42), shade,
-                        random.uniform(0.5, 0.8)));
+    b.join(stem, b.cone("shade", 0, 0, 0.03 + pole, random(0.32, 0.42), shade, random(0.5, 0.8)));
     return b;
 }
 
 Blueprint make_plant(Random& random) {
     Blueprint b("plant");
-    const double pot = random.uniform(0.2, 0.3), h = random.uniform(0.22, 0.32),
-                 trunk = random.uniform(0.25, 0.5);
-    const int base = b.foot(b.cone("pot", 0, 0, 0, pot, h, random.uniform(1.15, 1.4)));
-    const int stem = b.join(base, b.cylinder("trunk", 0, 0, h, random.uniform(0.03, 0.05), trunk));
-    const double crown = random.uniform(0.32, 0.5);
-    b.join(stem, b.cone("crown", 0, 0, h + trunk, crown, random.uniform(0.35, 0.6),
-                        random.uniform(0.0, 0.9)));
+    const double pot = random(0.2, 0.3), h = random(0.22, 0.32), trunk = random(0.25, 0.5);
+    const int base = b.foot(b.cone("pot", 0, 0, 0, pot, h, random(1.15, 1.4)));
+    const int stem = b.join(base, b.cylinder("trunk", 0, 0, h, random(0.03, 0.05), trunk));
+    const double crown = random(0.32, 0.5);
+    b.join(stem, b.cone("crown", 0, 0, h + trunk, crown, random(0.35, 0.6), random(0.0, 0.9)));
     return b;
 }
 
 Blueprint make_bin(Random& random) {
     Blueprint b("bin");
-    const double d = random.uniform(0.2, 0.28), h = random.uniform(0.26, 0.42);
-    const int body = random.chance(0.5) ? b.cone("bin", 0, 0, 0, d, h, random.uniform(1.1, 1.3))
+    const double d = random(0.2, 0.28), h = random(0.26, 0.42);
+    const int body = random.chance(0.5) ? b.cone("bin", 0, 0, 0, d, h, random(1.1, 1.3))
                                         : b.cylinder("bin", 0, 0, 0, d, h);
-    b.feet = {body};
+    b.foot(body);
     return b;
 }
 
 Blueprint make_crate(Random& random) {
     Blueprint b("crate");
-    const int body = b.foot(
-        b.box("crate", 0, 0, 0,
-              {random.uniform(0.28, 0.55), random.uniform(0.25, 0.4), random.uniform(0.2, 0.45)}));
+    const int body =
+        b.foot(b.box("crate", 0, 0, 0, {random(0.28, 0.55), random(0.25, 0.4), random(0.2, 0.45)}));
     b.stand_on(body, 0.35, "crate");
     return b;
 }
 
 Blueprint make_roll(Random& random) {
     Blueprint b("roll");
-    b.foot(b.lying("roll", 0, 0, 0, random.uniform(0.5, 1.0), random.uniform(0.12, 0.22)));
+    b.foot(b.lying("roll", 0, 0, 0, random(0.5, 1.0), random(0.12, 0.22)));
     return b;
 }
 
 Blueprint make_marker(Random& random) {
     Blueprint b("marker");
-    const double w = random.uniform(0.24, 0.32);
+    const double w = random(0.24, 0.32);
     const int base = b.foot(b.box("base", 0, 0, 0, {w, w, 0.03}));
-    b.join(base, b.cone("cone", 0, 0, 0.03, w * 0.8, random.uniform(0.32, 0.5),
-                        random.uniform(0.1, 0.25)));
+    b.join(base, b.cone("cone", 0, 0, 0.03, w * 0.8, random(0.32, 0.5), random(0.1, 0.25)));
     return b;
 }
 

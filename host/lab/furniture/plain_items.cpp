@@ -11,75 +11,70 @@ namespace {
 
 Blueprint cup(Random& random) {
     Blueprint b("cup");
-    const double d = random.uniform(0.07, 0.1), h = random.uniform(0.08, 0.13);
-    b.feet = {random.chance(0.5) ? b.cylinder("cup", 0, 0, 0, d, h)
-                                 : b.cone("cup", 0, 0, 0, d, h, random.uniform(1.05, 1.25))};
+    const double d = random(0.07, 0.1), h = random(0.08, 0.13);
+    b.foot(random.chance(0.5) ? b.cylinder("cup", 0, 0, 0, d, h)
+                              : b.cone("cup", 0, 0, 0, d, h, random(1.05, 1.25)));
     return b;
 }
 
 Blueprint bottle(Random& random) {
     Blueprint b("bottle");
-    const double d = random.uniform(0.065, 0.1), h = random.uniform(0.17, 0.24);
+    const double d = random(0.065, 0.1), h = random(0.17, 0.24);
     const int body = b.foot(b.cylinder("body", 0, 0, 0, d, h));
     if (random.chance(0.5)) {
-        b.join(body, b.cylinder("neck", 0, 0, h, 0.4 * d, random.uniform(0.05, 0.09)));
+        b.join(body, b.cylinder("neck", 0, 0, h, 0.4 * d, random(0.05, 0.09)));
     }
     return b;
 }
 
 Blueprint lying_bottle(Random& random) {
     Blueprint b("lying bottle");
-    b.foot(b.lying("body", 0, 0, 0, random.uniform(0.18, 0.28), random.uniform(0.065, 0.09)));
+    b.foot(b.lying("body", 0, 0, 0, random(0.18, 0.28), random(0.065, 0.09)));
     return b;
 }
 
 Blueprint ball(Random& random) {
     Blueprint b("ball");
-    b.foot(b.sphere("ball", 0, 0, 0, random.uniform(0.1, 0.2)));
+    b.foot(b.sphere("ball", 0, 0, 0, random(0.1, 0.2)));
     return b;
 }
 
 Blueprint plain_carton(Random& random) {
     Blueprint b("box");
-    b.feet = {
-        b.box("box", 0, 0, 0,
-              {random.uniform(0.12, 0.28), random.uniform(0.1, 0.2), random.uniform(0.07, 0.26)})};
+    b.foot(b.box("box", 0, 0, 0, {random(0.12, 0.28), random(0.1, 0.2), random(0.07, 0.26)}));
     return b;
 }
 
 Blueprint vase(Random& random) {
     Blueprint b("vase");
-    const double d = random.uniform(0.06, 0.09), belly = random.uniform(1.5, 2.1);
-    const double low = random.uniform(0.09, 0.14), high = random.uniform(0.08, 0.14);
+    const double d = random(0.06, 0.09), belly = random(1.5, 2.1);
+    const double low = random(0.09, 0.14), high = random(0.08, 0.14);
     const int base = b.foot(b.cone("lower", 0, 0, 0, d, low, belly));
-    b.join(base, b.cone("upper", 0, 0, low, d * belly, high, random.uniform(0.35, 0.6)));
+    b.join(base, b.cone("upper", 0, 0, low, d * belly, high, random(0.35, 0.6)));
     return b;
 }
 
 Blueprint pyramid(Random& random) {
     Blueprint b("cone");
-    b.foot(b.cone("cone", 0, 0, 0, random.uniform(0.12, 0.18), random.uniform(0.16, 0.26),
-                  random.chance(0.5) ? 0.0 : random.uniform(0.1, 0.4)));
+    b.foot(b.cone("cone", 0, 0, 0, random(0.12, 0.18), random(0.16, 0.26),
+                  random.chance(0.5) ? 0.0 : random(0.1, 0.4)));
     return b;
 }
 
 Blueprint plain_desk_lamp(Random& random) {
     Blueprint b("lamp");
-    const double pole = random.uniform(0.2, 0.3), shade = random.uniform(0.12, 0.17);
-    const int base = b.foot(b.cylinder("base", 0, 0, 0, random.uniform(0.13, 0.18), 0.025));
-    const int stem =
-        b.join(base, b.cylinder("pole", 0, 0, 0.025, random.uniform(0.02, 0.035), pole));
-    b.join(stem, b.cone("shade", 0, 0, 0.025 + pole, random.uniform(0.2, 0.26), shade,
-                        random.uniform(0.45, 1.0)));
+    const double pole = random(0.2, 0.3), shade = random(0.12, 0.17);
+    const int base = b.foot(b.cylinder("base", 0, 0, 0, random(0.13, 0.18), 0.025));
+    const int stem = b.join(base, b.cylinder("pole", 0, 0, 0.025, random(0.02, 0.035), pole));
+    b.join(stem, b.cone("shade", 0, 0, 0.025 + pole, random(0.2, 0.26), shade, random(0.45, 1.0)));
     return b;
 }
 
 Blueprint monitor(Random& random) {
     Blueprint b("monitor");
-    const double w = random.uniform(0.42, 0.62), h = w * random.uniform(0.55, 0.65),
-                 t = random.uniform(0.03, 0.05);
-    const double up = random.uniform(0.1, 0.16), foot = 0.02, neck = 0.045;
-    const int base = b.foot(b.box("base", 0, 0, 0, {random.uniform(0.2, 0.28), 0.18, foot}));
+    const double w = random(0.42, 0.62), h = w * random(0.55, 0.65), t = random(0.03, 0.05);
+    const double up = random(0.1, 0.16), foot = 0.02, neck = 0.045;
+    const int base = b.foot(b.box("base", 0, 0, 0, {random(0.2, 0.28), 0.18, foot}));
     const int stem = b.join(base, b.box("neck", 0, -0.03, foot, {0.07, neck, up + 0.5 * h - foot}));
     b.join(stem, b.box("panel", 0, -0.03 + (neck + t) / 2, up, {w, t, h}));
     return b;
@@ -87,7 +82,7 @@ Blueprint monitor(Random& random) {
 
 Blueprint laptop(Random& random) {
     Blueprint b("laptop");
-    const double w = random.uniform(0.3, 0.38), d = random.uniform(0.21, 0.26);
+    const double w = random(0.3, 0.38), d = random(0.21, 0.26);
     const int base = b.foot(b.box("keyboard", 0, 0, 0, {w, d, 0.022}));
     b.join(base, b.box("screen", 0, -d / 2 + 0.008, 0.022, {w, 0.016, d}));
     return b;
@@ -96,15 +91,15 @@ Blueprint laptop(Random& random) {
 // Each book or box is an object of its own; every one lies within the one below.
 std::vector<Blueprint> stack(Random& random) {
     std::vector<Blueprint> all;
-    double w = random.uniform(0.22, 0.3), d = random.uniform(0.16, 0.22);
+    double w = random(0.22, 0.3), d = random(0.16, 0.22);
     const int count = random.integer(2, 4);
     for (int k = 0; k < count; ++k) {
         Blueprint b("book");
-        b.foot(b.box("book", 0, 0, 0, {w, d, random.uniform(0.045, 0.09)}));
+        b.foot(b.box("book", 0, 0, 0, {w, d, random(0.045, 0.09)}));
         b.stand_on(0, 1, "stack", 0);
         all.push_back(std::move(b));
-        w *= random.uniform(0.75, 0.92);
-        d *= random.uniform(0.75, 0.92);
+        w *= random(0.75, 0.92);
+        d *= random(0.75, 0.92);
     }
     return all;
 }

@@ -24,9 +24,9 @@ void add_legs(Blueprint& b, double w, double d, double high, double thick, bool 
 
 Blueprint make_rail_chair(Random& random) {
     Blueprint b("chair");
-    const double w = random.uniform(0.38, 0.5), d = random.uniform(0.38, 0.48);
-    const double h = random.uniform(0.42, 0.48), t = random.uniform(0.02, 0.06);
-    const double leg = random.uniform(0.022, 0.045), top = random.uniform(0.78, 1.05);
+    const double w = random(0.38, 0.5), d = random(0.38, 0.48);
+    const double h = random(0.42, 0.48), t = random(0.02, 0.06);
+    const double leg = random(0.022, 0.045), top = random(0.78, 1.05);
     const bool round = random.chance(0.5);
     add_legs(b, w, d, h - t, leg, round);
     if (random.chance(0.5)) {
@@ -35,21 +35,21 @@ Blueprint make_rail_chair(Random& random) {
         b.box("seat", 0, 0, h - t, {w + 0.01, d + 0.01, t});
     }
     if (random.chance(0.6)) {  // rails between the legs
-        const double z = random.uniform(0.1, 0.3);
+        const double z = random(0.1, 0.3);
         for (const double s : {-1.0, 1.0}) {
             b.box("rail", s * (w - leg) / 2, 0, z, {0.7 * leg, d - leg, 0.025});
             b.box("rail", 0, s * (d - leg) / 2, z + 0.04, {w - leg, 0.7 * leg, 0.025});
         }
     }
-    const double back = -(d - leg) / 2, lean = random.uniform(0, 0.2);
+    const double back = -(d - leg) / 2, lean = random(0, 0.2);
     const auto shift = [&](double z) { return back - std::tan(lean) * (z - h); };
     for (const double s : {-1.0, 1.0})
         b.bar("post", {s * (w - leg) / 2, back, h - 0.02}, {s * (w - leg) / 2, shift(top), top},
               leg);
     switch (random.integer(0, 2)) {
         case 0:  // slats across
-            for (double z = h + random.uniform(0.1, 0.2); z < top - 0.05; z += 0.13)
-                b.box("slat", 0, shift(z), z, {w - leg, 0.015, random.uniform(0.04, 0.08)});
+            for (double z = h + random(0.1, 0.2); z < top - 0.05; z += 0.13)
+                b.box("slat", 0, shift(z), z, {w - leg, 0.015, random(0.04, 0.08)});
             break;
         case 1:  // upright ones under a rail
             b.box("slat", 0, shift(top - 0.05), top - 0.06, {w, 0.025, 0.06});
@@ -59,7 +59,7 @@ Blueprint make_rail_chair(Random& random) {
             }
             break;
         default: {  // a curved panel of strips
-            const double low = h + random.uniform(0.05, 0.22);
+            const double low = h + random(0.05, 0.22);
             for (int k = 0; k < 5; ++k) {
                 const double x = (k - 2.0) * w / 5;
                 const double bow = 0.03 * (1 - std::abs(k - 2.0) / 2);
@@ -69,7 +69,7 @@ Blueprint make_rail_chair(Random& random) {
         }
     }
     if (random.chance(0.3)) {  // arms
-        const double z = h + random.uniform(0.17, 0.24);
+        const double z = h + random(0.17, 0.24);
         for (const double s : {-1.0, 1.0}) {
             b.box("arm", s * (w - leg) / 2, back / 2, z, {0.04, d - 0.06, 0.025});
             b.box("post", s * (w - leg) / 2, d / 2 - 0.09, h - 0.01, {0.025, 0.025, z - h + 0.02});
@@ -80,8 +80,8 @@ Blueprint make_rail_chair(Random& random) {
 
 Blueprint make_office_chair(Random& random) {
     Blueprint b("swivel chair");
-    const double reach = random.uniform(0.27, 0.33), h = random.uniform(0.42, 0.55);
-    const double first = random.uniform(0, pi);
+    const double reach = random(0.27, 0.33), h = random(0.42, 0.55);
+    const double first = random(0, pi);
     for (int k = 0; k < 5; ++k) {
         const double a = first + 2 * pi * k / 5, c = std::cos(a), s = std::sin(a);
         b.bar("star", {0, 0, 0.1}, {reach * c, reach * s, 0.065}, 0.03);
@@ -89,9 +89,9 @@ Blueprint make_office_chair(Random& random) {
     }
     b.cylinder("column", 0, 0, 0.08, 0.05, h - 0.14);
     b.box("plate", 0, 0, h - 0.08, {0.2, 0.2, 0.03});
-    const double w = random.uniform(0.44, 0.52), d = random.uniform(0.42, 0.5);
+    const double w = random(0.44, 0.52), d = random(0.42, 0.5);
     b.rounded("seat", 0, 0.02, h - 0.055, {w, d, 0.075}, 0.03);
-    const double lean = random.uniform(0.02, 0.25), high = random.uniform(0.35, 0.75);
+    const double lean = random(0.02, 0.25), high = random(0.35, 0.75);
     b.box("spine", 0, -d / 2, h - 0.06, {0.06, 0.03, 0.25});
     b.cushion("back", {0, -d / 2 - 0.02 - std::sin(lean) * high / 2, h + 0.12 + high / 2},
               {0.92 * w, 0.06, high}, lean, 0.025);
@@ -106,9 +106,9 @@ Blueprint make_office_chair(Random& random) {
 
 Blueprint make_work_table(Random& random) {
     Blueprint b(random.chance(0.5) ? "desk" : "table");
-    const double w = random.uniform(0.8, 2.0), d = random.uniform(0.5, 0.95);
-    const double h = random.uniform(0.68, 0.8), t = random.uniform(0.018, 0.05);
-    const double leg = random.uniform(0.03, 0.08), over = random.uniform(0, 0.08);
+    const double w = random(0.8, 2.0), d = random(0.5, 0.95);
+    const double h = random(0.68, 0.8), t = random(0.018, 0.05);
+    const double leg = random(0.03, 0.08), over = random(0, 0.08);
     const int top = b.box("tabletop", 0, 0, h - t, {w, d, t});
     switch (random.integer(0, 3)) {
         case 0:  // cheeks and a panel
@@ -148,8 +148,7 @@ Blueprint make_work_table(Random& random) {
 
 Blueprint make_drawer_unit(Random& random) {
     Blueprint b("drawer unit");
-    const double w = random.uniform(0.35, 0.9), d = random.uniform(0.35, 0.55),
-                 h = random.uniform(0.4, 1.1);
+    const double w = random(0.35, 0.9), d = random(0.35, 0.55), h = random(0.4, 1.1);
     for (const auto [sx, sy] : corners)
         b.foot(b.cylinder("caster", sx * (w / 2 - 0.04), sy * (d / 2 - 0.04), 0, 0.04, 0.04));
     const int top = add_cabinet(b, {0, -d / 2, 0.04, {w, d - 0.02, h - 0.04}}, random, 0.15);
@@ -159,11 +158,10 @@ Blueprint make_drawer_unit(Random& random) {
 
 Blueprint make_bookcase(Random& random, double most_height) {
     Blueprint b("bookcase");
-    const double w = random.uniform(0.4, 1.4), d = random.uniform(0.22, 0.4);
-    const double h = std::min(most_height, random.uniform(0.7, 2.3)),
-                 t = random.uniform(0.016, 0.03);
+    const double w = random(0.4, 1.4), d = random(0.22, 0.4);
+    const double h = std::min(most_height, random(0.7, 2.3)), t = random(0.016, 0.03);
     const double plinth = random.chance(0.5) ? 0.06 : 0;
-    const int shelves = std::max(2, static_cast<int>((h - plinth) / random.uniform(0.24, 0.42)));
+    const int shelves = std::max(2, static_cast<int>((h - plinth) / random(0.24, 0.42)));
     const bool back = random.chance(0.75);
     for (const double s : {-1.0, 1.0}) b.foot(b.box("side", s * (w - t) / 2, 0, 0, {t, d, h}));
     if (back) b.box("back", 0, -d / 2 + 0.004, plinth, {w - 2 * t, 0.008, h - plinth});
@@ -183,18 +181,18 @@ Blueprint make_bookcase(Random& random, double most_height) {
 Blueprint make_couch(Random& random) {
     Blueprint b("sofa");
     const int seats = random.integer(1, 3);
-    const double seat = random.uniform(0.52, 0.75), arm = random.uniform(0.08, 0.25);
-    const double w = seats * seat + 2 * arm, d = random.uniform(0.75, 1.0);
-    const double foot = random.uniform(0.02, 0.14), base = random.uniform(0.12, 0.25);
-    const double back = random.uniform(0.12, 0.25), high = random.uniform(0.68, 0.95);
+    const double seat = random(0.52, 0.75), arm = random(0.08, 0.25);
+    const double w = seats * seat + 2 * arm, d = random(0.75, 1.0);
+    const double foot = random(0.02, 0.14), base = random(0.12, 0.25);
+    const double back = random(0.12, 0.25), high = random(0.68, 0.95);
     for (const auto [sx, sy] : corners)
         b.foot(b.cylinder("foot", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, 0.045, foot));
     b.box("base", 0, 0, foot, {w, d, base});
-    const double top = foot + base, soft = random.uniform(0.1, 0.18);
+    const double top = foot + base, soft = random(0.1, 0.18);
     b.rounded("backrest", 0, -d / 2 + back / 2, top, {w, back, high - top}, 0.3 * back);
     for (const double s : {-1.0, 1.0})
-        b.rounded("armrest", s * (w - arm) / 2, back / 2, top,
-                  {arm, d - back, random.uniform(0.2, 0.34)}, 0.3 * arm);
+        b.rounded("armrest", s * (w - arm) / 2, back / 2, top, {arm, d - back, random(0.2, 0.34)},
+                  0.3 * arm);
     for (int k = 0; k < seats; ++k) {
         const double x = (k - (seats - 1) / 2.0) * seat;
         const int cushion =
@@ -203,7 +201,7 @@ Blueprint make_couch(Random& random) {
             {cushion, x, back / 2, seat / 2 - 0.02, (d - back) / 2 - 0.05, 0.5, "sofa"});
         if (random.chance(0.6)) {
             b.cushion("back cushion", {x, -d / 2 + back + 0.06, top + soft + 0.2},
-                      {seat - 0.03, 0.12, 0.36}, random.uniform(0.05, 0.25), 0.05);
+                      {seat - 0.03, 0.12, 0.36}, random(0.05, 0.25), 0.05);
             b.surfaces.back().half_y -= 0.1;
             b.surfaces.back().y += 0.1;
         }
@@ -213,8 +211,8 @@ Blueprint make_couch(Random& random) {
 
 Blueprint make_tv_board(Random& random) {
     Blueprint b("low board");
-    const double w = random.uniform(1.0, 2.2), d = random.uniform(0.32, 0.48),
-                 h = random.uniform(0.3, 0.7), leg = random.uniform(0.04, 0.18);
+    const double w = random(1.0, 2.2), d = random(0.32, 0.48), h = random(0.3, 0.7),
+                 leg = random(0.04, 0.18);
     for (const auto [sx, sy] : corners)
         b.foot(b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.05), 0, {0.04, 0.04, leg}));
     const int cells = random.integer(2, 4);
@@ -232,19 +230,18 @@ Blueprint make_tv_board(Random& random) {
 
 Blueprint make_double_bed(Random& random) {
     Blueprint b("bed");
-    const double w = random.uniform(0.85, 1.85), d = random.uniform(1.95, 2.15);
-    const double leg = random.uniform(0.03, 0.25), frame = random.uniform(0.06, 0.2);
+    const double w = random(0.85, 1.85), d = random(1.95, 2.15);
+    const double leg = random(0.03, 0.25), frame = random(0.06, 0.2);
     add_legs(b, w, d, leg, 0.06, random.chance(0.5));
     b.box("frame", 0, 0, leg, {w, d, frame});
-    const double soft = random.uniform(0.14, 0.28), top = leg + frame;
+    const double soft = random(0.14, 0.28), top = leg + frame;
     const int mattress =
         b.rounded("mattress", 0, 0.01, top - 0.03, {w - 0.04, d - 0.06, soft}, 0.25 * soft);
     if (random.chance(0.8))
-        b.foot(b.box("headboard", 0, -d / 2 - 0.02, 0, {w, 0.04, top + random.uniform(0.2, 0.7)}));
+        b.foot(b.box("headboard", 0, -d / 2 - 0.02, 0, {w, 0.04, top + random(0.2, 0.7)}));
     if (random.chance(0.3)) b.box("footboard", 0, d / 2 + 0.015, leg, {w, 0.03, frame + soft});
     if (random.chance(0.6)) {  // a cover that hangs over the sides
-        const double over = random.uniform(0.15, soft + 0.1),
-                     from = -d / 2 + random.uniform(0.4, 0.8);
+        const double over = random(0.15, soft + 0.1), from = -d / 2 + random(0.4, 0.8);
         const double length = d / 2 - from, z = top - 0.03 + soft;
         b.rounded("cover", 0, from + length / 2, z - 0.01, {w + 0.04, length, 0.05}, 0.02);
         for (const double s : {-1.0, 1.0})

@@ -13,8 +13,7 @@ using std::numbers::pi;
 
 Blueprint crate(Random& random) {
     Blueprint b("crate");
-    const double w = random.uniform(0.3, 0.6), d = random.uniform(0.25, 0.4),
-                 h = random.uniform(0.16, 0.34), t = 0.014;
+    const double w = random(0.3, 0.6), d = random(0.25, 0.4), h = random(0.16, 0.34), t = 0.014;
     b.foot(b.box("floor", 0, 0, 0, {w, d, t}));
     const int slats = random.chance(0.5) ? 1 : random.integer(2, 3);
     for (int k = 0; k < slats; ++k) {
@@ -34,7 +33,7 @@ Blueprint crate(Random& random) {
 
 Blueprint canister(Random& random) {
     Blueprint b("canister");
-    const double w = random.uniform(0.15, 0.3), h = random.uniform(0.22, 0.4);
+    const double w = random(0.15, 0.3), h = random(0.22, 0.4);
     b.foot(b.rounded("body", 0, 0, 0, {w, 0.7 * w, h}, 0.03));
     b.cylinder("cap", 0.3 * w, 0, h, 0.05, 0.03);
     b.box("handle", -0.1 * w, 0, h + 0.03, {0.5 * w, 0.03, 0.02});
@@ -46,8 +45,7 @@ Blueprint canister(Random& random) {
 
 Blueprint make_carton(Random& random, double most) {
     Blueprint b("carton");
-    const Vec3 size{random.uniform(0.4, 1) * most, random.uniform(0.4, 1) * most,
-                    random.uniform(0.3, 0.9) * most};
+    const Vec3 size{random(0.4, 1) * most, random(0.4, 1) * most, random(0.3, 0.9) * most};
     const bool open = random.chance(0.15) && size[2] > 0.15;
     if (!open) {
         b.foot(b.box("box", 0, 0, 0, size));
@@ -61,7 +59,7 @@ Blueprint make_carton(Random& random, double most) {
         b.box("side", s * (size[0] - t) / 2, 0, t, {t, size[1], size[2] - t});
         b.box("side", 0, s * (size[1] - t) / 2, t, {size[0] - 2 * t, t, size[2] - t});
         b.leaning("flap", 0, s * size[1] / 2, size[2] - 0.002, {0.9 * size[0], t, 0.3 * size[1]},
-                  -s * random.uniform(0.4, 1.4));
+                  -s * random(0.4, 1.4));
     }
     return b;
 }
@@ -69,9 +67,8 @@ Blueprint make_carton(Random& random, double most) {
 Blueprint make_rack(Random& random, double most_height) {
     Blueprint b("rack");
     const int bays = random.integer(1, 3);
-    const double bay = random.uniform(0.8, 2.4), d = random.uniform(0.4, 1.0);
-    const double h = std::min(most_height, random.uniform(1.6, 3.2)),
-                 post = random.uniform(0.03, 0.09);
+    const double bay = random(0.8, 2.4), d = random(0.4, 1.0);
+    const double h = std::min(most_height, random(1.6, 3.2)), post = random(0.03, 0.09);
     const double w = bays * bay + post;
     for (int k = 0; k <= bays; ++k) {
         const double x = -w / 2 + post / 2 + k * bay;
@@ -80,11 +77,10 @@ Blueprint make_rack(Random& random, double most_height) {
         for (double z = 0.25; z < h - 0.4; z += 0.7)
             b.bar("brace", {x, -(d - post) / 2, z}, {x, (d - post) / 2, z + 0.35}, 0.6 * post);
     }
-    const int levels = std::max(2, static_cast<int>(h / random.uniform(0.45, 1.1)));
+    const int levels = std::max(2, static_cast<int>(h / random(0.45, 1.1)));
     const bool solid = random.chance(0.7);
     for (int level = 0; level < levels; ++level) {
-        const double z = 0.08 + level * (h - 0.3) / std::max(1, levels - 1),
-                     t = random.uniform(0.02, 0.05);
+        const double z = 0.08 + level * (h - 0.3) / std::max(1, levels - 1), t = random(0.02, 0.05);
         const double clear = level + 1 < levels ? (h - 0.3) / (levels - 1) - t - 0.1 : 0.6;
         for (const double s : {-1.0, 1.0})
             b.box("beam", 0, s * (d - 0.7 * post) / 2, z - 0.06, {w - post, 0.6 * post, 0.06});
@@ -128,11 +124,11 @@ Blueprint make_pallet(Random& random) {
 
 Blueprint make_trolley(Random& random) {
     Blueprint b("trolley");
-    const double w = random.uniform(0.6, 1.1), d = random.uniform(0.45, 0.65), z = 0.14;
+    const double w = random(0.6, 1.1), d = random(0.45, 0.65), z = 0.14;
     for (const auto [sx, sy] : corners)
         b.foot(b.lying("wheel", sx * (w / 2 - 0.1), sy * (d / 2 - 0.08), 0, 0.03, z, pi / 2));
     const int deck = b.box("deck", 0, 0, z - 0.005, {w, d, 0.03});
-    const double h = random.uniform(0.8, 1.0);
+    const double h = random(0.8, 1.0);
     for (const double s : {-1.0, 1.0})
         b.bar("rail", {-w / 2 + 0.02, s * (d / 2 - 0.03), z},
               {-w / 2 - 0.04, s * (d / 2 - 0.03), h}, 0.03);
@@ -150,8 +146,8 @@ Blueprint make_trolley(Random& random) {
 
 Blueprint make_bucket(Random& random) {
     Blueprint b("bucket");
-    const double r = random.uniform(0.11, 0.16), h = random.uniform(0.22, 0.34);
-    b.feet = {b.revolved("body", 0, 0, 0, vessel_within({{0.75 * r, 0}, {r, h}}, 0.005, 0.006))};
+    const double r = random(0.11, 0.16), h = random(0.22, 0.34);
+    b.foot(b.revolved("body", 0, 0, 0, vessel_within({{0.75 * r, 0}, {r, h}}, 0.005, 0.006)));
     for (int k = 0; k < 6; ++k) {  // the handle, fallen to one side or upright
         const double a = pi * k / 6, c = pi * (k + 1) / 6;
         b.bar("handle", {r * std::cos(a), 0, h + r * std::sin(a) - 0.01},
@@ -162,7 +158,7 @@ Blueprint make_bucket(Random& random) {
 
 Blueprint make_drum(Random& random) {
     Blueprint b("drum");
-    const double r = random.uniform(0.2, 0.3), h = random.uniform(0.55, 0.9);
+    const double r = random(0.2, 0.3), h = random(0.55, 0.9);
     b.foot(b.cylinder("body", 0, 0, 0, 2 * r, h));
     for (const double z : {0.0, 0.33, 0.66})
         b.cylinder("hoop", 0, 0, z * h + 0.01, 2 * r + 0.02, 0.025);
@@ -173,7 +169,7 @@ Blueprint make_drum(Random& random) {
 
 Blueprint make_step_ladder(Random& random) {
     Blueprint b("ladder");
-    const double h = random.uniform(0.6, 1.9), w = 0.42, lean = 0.22;
+    const double h = random(0.6, 1.9), w = 0.42, lean = 0.22;
     std::vector<int> sides;
     for (const double s : {-1.0, 1.0}) {
         const double foot = 0.02 + h * std::tan(lean);
@@ -194,8 +190,7 @@ Blueprint make_step_ladder(Random& random) {
 
 Blueprint make_gondola(Random& random) {
     Blueprint b("shelf");
-    const double w = random.uniform(0.9, 2.2), d = random.uniform(0.5, 0.9),
-                 h = random.uniform(1.1, 1.7);
+    const double w = random(0.9, 2.2), d = random(0.5, 0.9), h = random(1.1, 1.7);
     b.foot(b.box("base", 0, 0, 0, {w, d, 0.12}));
     b.box("wall", 0, 0, 0.12, {w, 0.03, h - 0.12});
     for (const double s : {-1.0, 1.0})
@@ -227,7 +222,7 @@ Stack make_store_item(Random& random, double clearance) {
             stack = {make_bucket(random)};
             break;
         default: {
-            Blueprint below = make_carton(random, random.uniform(0.2, 0.7));
+            Blueprint below = make_carton(random, random(0.2, 0.7));
             for (int k = random.integer(1, 3); k > 0; --k) {
                 if (below.parts.size() < 3) stack.push_back(below);
                 if (below.parts.size() >= 3 && stack.empty()) stack.push_back(below);
@@ -245,9 +240,8 @@ Stack make_store_item(Random& random, double clearance) {
 
 Stack make_shop_item(Random& random, double clearance) {
     if (random.chance(0.55)) {
-        const double h = std::min(clearance - 0.01, random.uniform(0.12, 0.35));
-        if (h > 0.06)
-            return {make_row(random, random.uniform(0.2, 1.2), h, random.uniform(0.1, 0.24))};
+        const double h = std::min(clearance - 0.01, random(0.12, 0.35));
+        if (h > 0.06) return {make_row(random, random(0.2, 1.2), h, random(0.1, 0.24))};
     }
     if (random.chance(0.3)) return make_desk_item(random, clearance);
     if (random.chance(0.5)) {

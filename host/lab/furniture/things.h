@@ -122,8 +122,6 @@ Blueprint make_board_on_wheels(Random& random);
 Blueprint make_corner_sofa(Random& random);
 Blueprint make_ottoman(Random& random);
 Blueprint make_wall_curtain(Random& random, double length, double height);  // to be fixed
-Blueprint make_backpack(Random& random);
-Blueprint make_cloth_pile(Random& random);                 // a heap
 Blueprint make_soft_bed(Random& random);                   // an uneven duvet, pillows
 Stack make_floor_thing(Random& random, double clearance);  // bags, boxes, bins, heaps
 

@@ -24,16 +24,16 @@ int make_pot(Blueprint& b, double r, double h) {
 // Balls on a stem.
 Blueprint make_topiary(Random& random) {
     Blueprint b("topiary");
-    const double h = random.uniform(0.22, 0.34);
-    int below = make_pot(b, random.uniform(0.13, 0.2), h);
-    double z = h, ball = random.uniform(0.28, 0.4);
+    const double h = random(0.22, 0.34);
+    int below = make_pot(b, random(0.13, 0.2), h);
+    double z = h, ball = random(0.28, 0.4);
     for (int k = random.integer(1, 2); k > 0; --k) {
-        const double stem = random.uniform(0.12, 0.35);
+        const double stem = random(0.12, 0.35);
         const int trunk = b.join(below, b.cylinder("trunk", 0, 0, z, 0.035, stem));
         const int crown = b.join(trunk, b.sphere("crown", 0, 0, z + stem, ball));
         below = crown;
         z += stem + ball;
-        ball *= random.uniform(0.6, 0.85);
+        ball *= random(0.6, 0.85);
     }
     return b;
 }
@@ -41,18 +41,18 @@ Blueprint make_topiary(Random& random) {
 // Stiff leaves that lean outwards all around, each standing on the earth in the pot.
 Blueprint make_leafy_plant(Random& random, double scale) {
     Blueprint b("plant");
-    const double r = scale * random.uniform(0.1, 0.15), h = scale * random.uniform(0.18, 0.3);
+    const double r = scale * random(0.1, 0.15), h = scale * random(0.18, 0.3);
     const int pot = make_pot(b, r, h);
     const int leaves = random.integer(4, 6);
     const double circle = 0.55 * r, width = 1.2 * circle * std::tan(pi / leaves);
-    const double first = random.uniform(0, 2 * pi);
+    const double first = random(0, 2 * pi);
     for (int k = 0; k < leaves; ++k) {
         // A leaning box goes towards -y of its own.
         const double yaw = first + 2 * pi * k / leaves;
         b.join(pot, b.leaning("leaf", circle * std::sin(yaw), -circle * std::cos(yaw), h,
                               {std::min(width, 0.09 * scale + 0.03), 0.006 + 0.004 * scale,
-                               scale * random.uniform(0.35, 0.7)},
-                              random.uniform(0.08, 0.45), yaw));
+                               scale * random(0.35, 0.7)},
+                              random(0.08, 0.45), yaw));
     }
     return b;
 }
@@ -61,17 +61,16 @@ Blueprint make_leafy_plant(Random& random, double scale) {
 Blueprint make_arc_lamp(Random& random) {
     Blueprint b("arc lamp");
     const double t = 0.07;  // heavy enough for what hangs out over its edge
-    const int base = b.foot(b.cylinder("base", 0, 0, 0, random.uniform(0.38, 0.44), t));
+    const int base = b.foot(b.cylinder("base", 0, 0, 0, random(0.38, 0.44), t));
     b.arm(base, {0, -0.08, t},
-          {{random.uniform(0.9, 1.15), random.uniform(-0.05, 0.08)},
-           {random.uniform(0.28, 0.4), random.uniform(0.5, 0.9)}},
-          0.03, random.uniform(0.18, 0.24));
+          {{random(0.9, 1.15), random(-0.05, 0.08)}, {random(0.28, 0.4), random(0.5, 0.9)}}, 0.03,
+          random(0.18, 0.24));
     return b;
 }
 
 Blueprint make_coat_stand(Random& random) {
     Blueprint b("coat stand");
-    const double h = random.uniform(1.5, 1.75), d = 0.045;
+    const double h = random(1.5, 1.75), d = 0.045;
     const int foot =
         b.foot(b.revolved("foot", 0, 0, 0, solid_within({{0.19, 0}, {0.19, 0.02}, {0.05, 0.05}})));
     const int pole = b.join(foot, b.cylinder("pole", 0, 0, 0.05, d, h));
@@ -87,8 +86,8 @@ Blueprint make_coat_stand(Random& random) {
 
 Blueprint make_barrel(Random& random) {
     Blueprint b("barrel");
-    const double r = random.uniform(0.16, 0.24), h = random.uniform(0.45, 0.7);
-    const double belly = r * random.uniform(1.1, 1.25);
+    const double r = random(0.16, 0.24), h = random(0.45, 0.7);
+    const double belly = r * random(1.1, 1.25);
     const int body =
         b.foot(b.revolved("barrel", 0, 0, 0, solid_within(smooth_side({r, belly, belly, r}, h))));
     b.surfaces.push_back({body, 0, 0, 0.65 * r, 0.65 * r, 0.4, "barrel"});
@@ -98,27 +97,26 @@ Blueprint make_barrel(Random& random) {
 // A bin or basket that one can look into.
 Blueprint make_open_bin(Random& random) {
     Blueprint b("open bin");
-    const double r = random.uniform(0.11, 0.17), h = random.uniform(0.25, 0.42);
-    const double top = r * random.uniform(1.05, 1.4);
+    const double r = random(0.11, 0.17), h = random(0.25, 0.42);
+    const double top = r * random(1.05, 1.4);
     const Side side =
         random.chance(0.5) ? Side{{r, 0}, {top, h}} : smooth_side({r, 1.15 * top, top}, h);
-    b.foot(b.revolved("bin", 0, 0, 0, vessel_within(side, random.uniform(0.008, 0.014), 0.015)));
+    b.foot(b.revolved("bin", 0, 0, 0, vessel_within(side, random(0.008, 0.014), 0.015)));
     return b;
 }
 
 // Soft luggage.
 Blueprint make_bag(Random& random) {
     Blueprint b("bag");
-    const Vec3 size{random.uniform(0.35, 0.55), random.uniform(0.18, 0.28),
-                    random.uniform(0.25, 0.5)};
-    b.foot(b.rounded("bag", 0, 0, 0, size, random.uniform(0.2, 0.42) * size[1]));
+    const Vec3 size{random(0.35, 0.55), random(0.18, 0.28), random(0.25, 0.5)};
+    b.foot(b.rounded("bag", 0, 0, 0, size, random(0.2, 0.42) * size[1]));
     return b;
 }
 
 Blueprint make_dumbbell(Random& random) {
     Blueprint b("dumbbell");
-    const double d = random.uniform(0.13, 0.2), disc = random.uniform(0.06, 0.1),
-                 bar = random.uniform(0.12, 0.16), thick = 0.035;
+    const double d = random(0.13, 0.2), disc = random(0.06, 0.1), bar = random(0.12, 0.16),
+                 thick = 0.035;
     const int grip = b.lying("grip", 0, 0, d / 2 - thick / 2, bar, thick);
     for (const double side : {-1.0, 1.0}) {
         b.foot(b.join(grip, b.lying("disc", side * (bar + disc) / 2, 0, 0, disc, d)));
@@ -128,36 +126,32 @@ Blueprint make_dumbbell(Random& random) {
 
 Blueprint make_rug(Random& random) {
     Blueprint b("rug");
-    const double t = random.uniform(0.012, 0.025);
+    const double t = random(0.012, 0.025);
     b.underfoot = true;
-    b.feet = {random.chance(0.4)
-                  ? b.cylinder("rug", 0, 0, 0, random.uniform(0.8, 1.3), t)
-                  : b.box("rug", 0, 0, 0, {random.uniform(0.8, 1.5), random.uniform(0.6, 1.0), t})};
+    b.foot(random.chance(0.4) ? b.cylinder("rug", 0, 0, 0, random(0.8, 1.3), t)
+                              : b.box("rug", 0, 0, 0, {random(0.8, 1.5), random(0.6, 1.0), t}));
     return b;
 }
 
 Blueprint make_leaning_thing(Random& random) {
-    const double lean = random.uniform(0.1, 0.32);
+    const double lean = random(0.1, 0.32);
     switch (random.integer(0, 3)) {
         case 0: {
             Blueprint b("leaning board");
             b.feet = b.leans = {b.leaning(
-                "board", 0, 0, 0,
-                {random.uniform(0.2, 0.8), random.uniform(0.015, 0.04), random.uniform(0.9, 1.8)},
-                lean)};
+                "board", 0, 0, 0, {random(0.2, 0.8), random(0.015, 0.04), random(0.9, 1.8)}, lean)};
             return b;
         }
         case 1: {
             Blueprint b("leaning picture");
-            b.feet = b.leans = {b.leaning(
-                "picture", 0, 0, 0,
-                {random.uniform(0.5, 0.9), random.uniform(0.02, 0.035), random.uniform(0.45, 0.75)},
-                lean)};
+            b.feet = b.leans = {
+                b.leaning("picture", 0, 0, 0,
+                          {random(0.5, 0.9), random(0.02, 0.035), random(0.45, 0.75)}, lean)};
             return b;
         }
         case 2: {
             Blueprint b("leaning pole");
-            const double d = random.uniform(0.035, 0.06), length = random.uniform(1.1, 1.8);
+            const double d = random(0.035, 0.06), length = random(1.1, 1.8);
             const double low = d / 2 * std::sin(lean);
             b.feet =
                 b.leans = {b.bar("pole", {0, 0, low},
@@ -166,7 +160,7 @@ Blueprint make_leaning_thing(Random& random) {
         }
         default: {
             Blueprint b("ladder");
-            const double length = random.uniform(1.3, 2.1), width = random.uniform(0.36, 0.46);
+            const double length = random(1.3, 2.1), width = random(0.36, 0.46);
             for (const double side : {-1.0, 1.0}) {
                 b.foot(b.leaning("stringer", side * width / 2, 0, 0, {0.03, 0.07, length}, lean));
             }

@@ -13,7 +13,7 @@ using std::numbers::pi;
 // Legs that spread outwards from points on a circle or at the corners of a rectangle under `top`.
 void splayed_legs(Blueprint& b, Random& random, int top, const std::vector<Vec3>& upper_ends,
                   double height, double diameter) {
-    const double lean = random.uniform(0.1, 0.26);
+    const double lean = random(0.1, 0.26);
     for (const Vec3& end : upper_ends) {
         b.foot(b.join(top, b.leg("leg", end[0], end[1], 0, height, diameter, lean,
                                  std::atan2(end[1], end[0]))));
@@ -37,8 +37,8 @@ std::vector<Vec3> on_rectangle(double half_x, double half_y) {
 
 Blueprint make_splayed_stool(Random& random) {
     Blueprint b("stool");
-    const double d = random.uniform(0.28, 0.36), t = random.uniform(0.03, 0.05);
-    const double h = random.uniform(0.42, 0.68);
+    const double d = random(0.28, 0.36), t = random(0.03, 0.05);
+    const double h = random(0.42, 0.68);
     // A disc with a round edge.
     const int seat =
         b.revolved("seat", 0, 0, h - t,
@@ -46,22 +46,20 @@ Blueprint make_splayed_stool(Random& random) {
                                        joined(quarter(d / 2 - t / 2, 0, t / 2, t / 2, true),
                                               quarter(d / 2, t / 2, -t / 2, t / 2, false)))));
     splayed_legs(b, random, seat, on_circle(random.integer(3, 4), 0.3 * d), h - t,
-                 random.uniform(0.028, 0.04));
+                 random(0.028, 0.04));
     b.surfaces.push_back({seat, 0, 0, 0.25 * d, 0.25 * d, 0.3, "seat"});
     return b;
 }
 
 Blueprint make_splayed_chair(Random& random) {
     Blueprint b("chair");
-    const double w = random.uniform(0.42, 0.5), d = random.uniform(0.42, 0.48);
-    const double h = random.uniform(0.43, 0.48), t = random.uniform(0.035, 0.06);
+    const double w = random(0.42, 0.5), d = random(0.42, 0.48);
+    const double h = random(0.43, 0.48), t = random(0.035, 0.06);
     const int seat = b.rounded("seat", 0, 0, h - t, {w, d, t}, 0.45 * t);
-    splayed_legs(b, random, seat, on_rectangle(0.36 * w, 0.34 * d), h - t,
-                 random.uniform(0.03, 0.042));
+    splayed_legs(b, random, seat, on_rectangle(0.36 * w, 0.34 * d), h - t, random(0.03, 0.042));
     // The lower edge of the leaning back stands on the flat of the seat.
     b.join(seat, b.leaning("back", 0, -d / 2 + 0.06, h,
-                           {w - 0.04, random.uniform(0.02, 0.035), random.uniform(0.36, 0.5)},
-                           random.uniform(0.1, 0.3)));
+                           {w - 0.04, random(0.02, 0.035), random(0.36, 0.5)}, random(0.1, 0.3)));
     b.surfaces.push_back({seat, 0, 0.05, w / 2 - 0.05, d / 2 - 0.11, 0.4, "seat"});
     return b;
 }
@@ -69,9 +67,9 @@ Blueprint make_splayed_chair(Random& random) {
 // A star of five feet, a column, and a seat with a back on a stem.
 Blueprint make_swivel_chair(Random& random) {
     Blueprint b("swivel chair");
-    const double hub = 0.07, reach = random.uniform(0.2, 0.26), low = 0.05;
-    const double h = random.uniform(0.44, 0.52), t = random.uniform(0.06, 0.09);
-    const double w = random.uniform(0.44, 0.52), d = random.uniform(0.42, 0.48);
+    const double hub = 0.07, reach = random(0.2, 0.26), low = 0.05;
+    const double h = random(0.44, 0.52), t = random(0.06, 0.09);
+    const double w = random(0.44, 0.52), d = random(0.42, 0.48);
     const int column = b.cylinder("column", 0, 0, 0.02, hub, h - t - 0.02);
     const int seat = b.join(column, b.rounded("seat", 0, 0, h - t, {w, d, t}, 0.45 * t));
     for (int k = 0; k < 5; ++k) {
@@ -79,7 +77,7 @@ Blueprint make_swivel_chair(Random& random) {
         b.foot(b.join(column, b.box("foot", from * std::cos(angle), from * std::sin(angle), 0,
                                     {reach, 0.04, low}, angle)));
     }
-    const double up = random.uniform(0.1, 0.18), back_h = random.uniform(0.36, 0.5);
+    const double up = random(0.1, 0.18), back_h = random(0.36, 0.5);
     const int stem = b.join(seat, b.box("stem", 0, -d / 2 + 0.07, h, {0.06, 0.03, up + 0.1}));
     b.join(stem,
            b.rounded("back", 0, -d / 2 + 0.085 + 0.035, h + up, {w - 0.06, 0.07, back_h}, 0.03));
@@ -89,10 +87,10 @@ Blueprint make_swivel_chair(Random& random) {
 Blueprint make_rounded_sofa(Random& random) {
     Blueprint b("sofa");
     const bool single = random.chance(0.3);
-    const double w = single ? random.uniform(0.8, 1.0) : random.uniform(1.5, 2.1);
-    const double d = random.uniform(0.8, 0.95), arm = random.uniform(0.14, 0.2);
-    const double back = random.uniform(0.18, 0.26), leg = random.uniform(0.06, 0.14);
-    const double base = random.uniform(0.16, 0.22), cushion = random.uniform(0.14, 0.2);
+    const double w = single ? random(0.8, 1.0) : random(1.5, 2.1);
+    const double d = random(0.8, 0.95), arm = random(0.14, 0.2);
+    const double back = random(0.18, 0.26), leg = random(0.06, 0.14);
+    const double base = random(0.16, 0.22), cushion = random(0.14, 0.2);
     const int frame = b.rounded("frame", 0, 0, leg, {w, d, base}, 0.03);
     for (const auto [sx, sy] : corners) {
         b.foot(b.join(frame,
@@ -100,11 +98,10 @@ Blueprint make_rounded_sofa(Random& random) {
     }
     const double top = leg + base, inner = w - 2 * arm;
     b.join(frame, b.rounded("back", 0, -d / 2 + back / 2 + 0.01, top,
-                            {inner, back, cushion + random.uniform(0.28, 0.4)}, 0.4 * back));
+                            {inner, back, cushion + random(0.28, 0.4)}, 0.4 * back));
     for (const double sx : {-1.0, 1.0}) {
-        b.join(frame,
-               b.rounded("arm", sx * (w - arm) / 2, 0, top,
-                         {arm - 0.006, d - 0.08, cushion + random.uniform(0.08, 0.2)}, 0.4 * arm));
+        b.join(frame, b.rounded("arm", sx * (w - arm) / 2, 0, top,
+                                {arm - 0.006, d - 0.08, cushion + random(0.08, 0.2)}, 0.4 * arm));
     }
     const int seats = single ? 1 : random.integer(2, 3);
     const double each = inner / seats, depth = d - back - 0.06;
@@ -120,15 +117,14 @@ Blueprint make_rounded_sofa(Random& random) {
 // Arms that are rolls on boards.
 Blueprint make_bolster_armchair(Random& random) {
     Blueprint b("armchair");
-    const double inner = random.uniform(0.5, 0.62), d = random.uniform(0.7, 0.82);
-    const double h = random.uniform(0.36, 0.44), board = 0.06, roll = random.uniform(0.13, 0.18);
+    const double inner = random(0.5, 0.62), d = random(0.7, 0.82);
+    const double h = random(0.36, 0.44), board = 0.06, roll = random(0.13, 0.18);
     const int seat = b.foot(b.box("seat", 0, 0, 0, {inner, d, h}));
     b.join(seat, b.leaning("back", 0, -d / 2 + 0.02, h,
-                           {inner - (roll - board) - 0.02, random.uniform(0.12, 0.17),
-                            random.uniform(0.42, 0.55)},
-                           random.uniform(0.08, 0.2)));
+                           {inner - (roll - board) - 0.02, random(0.12, 0.17), random(0.42, 0.55)},
+                           random(0.08, 0.2)));
     for (const double sx : {-1.0, 1.0}) {
-        const double x = sx * (inner + board) / 2, up = h + random.uniform(0.1, 0.14);
+        const double x = sx * (inner + board) / 2, up = h + random(0.1, 0.14);
         const int side = b.foot(b.join(seat, b.box("side", x, 0.05, 0, {board, d - 0.1, up})));
         b.join(side, b.lying("roll", x, 0.05, up, d - 0.12, roll, pi / 2));
     }
@@ -138,8 +134,8 @@ Blueprint make_bolster_armchair(Random& random) {
 
 Blueprint make_pouf(Random& random) {
     Blueprint b("pouf");
-    const double r = random.uniform(0.2, 0.3), h = random.uniform(0.3, 0.42);
-    const double foot = random.uniform(0.55, 0.75) * r;
+    const double r = random(0.2, 0.3), h = random(0.3, 0.42);
+    const double foot = random(0.55, 0.75) * r;
     const int body = b.foot(b.revolved(
         "pouf", 0, 0, 0,
         solid_within(joined({{foot, 0}}, joined(quarter(foot, 0, r - foot, h / 2, true),

@@ -8,16 +8,15 @@ namespace {
 
 Blueprint picture(Random& random) {
     Blueprint b("picture");
-    const double w = random.uniform(0.35, 1.0);
-    b.wall_parts = {
-        b.box("picture", 0, 0, 0, {w, random.uniform(0.02, 0.045), w * random.uniform(0.6, 1.2)})};
+    const double w = random(0.35, 1.0);
+    b.wall_parts = {b.box("picture", 0, 0, 0, {w, random(0.02, 0.045), w * random(0.6, 1.2)})};
     return b;
 }
 
 // A disc whose axis points into the room: a clock or a mirror.
 Blueprint disc(Random& random) {
     Blueprint b("wall disc");
-    const double d = random.uniform(0.28, 0.6), t = random.uniform(0.03, 0.05);
+    const double d = random(0.28, 0.6), t = random(0.03, 0.05);
     b.wall_parts = {b.bar("disc", {0, 0, d / 2}, {0, t, d / 2}, d)};
     return b;
 }
@@ -25,8 +24,7 @@ Blueprint disc(Random& random) {
 // A panel on two brackets, clear of the wall.
 Blueprint radiator(Random& random) {
     Blueprint b("radiator");
-    const double w = random.uniform(0.6, 1.3), h = random.uniform(0.45, 0.6),
-                 t = random.uniform(0.05, 0.1), off = 0.05;
+    const double w = random(0.6, 1.3), h = random(0.45, 0.6), t = random(0.05, 0.1), off = 0.05;
     const int panel = b.box("panel", 0, off + t / 2, 0, {w, t, h});
     for (const double side : {-1.0, 1.0}) {
         const int bracket =
@@ -38,7 +36,7 @@ Blueprint radiator(Random& random) {
 
 Blueprint television(Random& random) {
     Blueprint b("television");
-    const double w = random.uniform(0.8, 1.3), h = 0.57 * w, off = 0.06;
+    const double w = random(0.8, 1.3), h = 0.57 * w, off = 0.06;
     const int bracket = b.box("bracket", 0, off / 2, 0.3 * h, {0.3 * w, off, 0.4 * h});
     b.join(bracket, b.box("panel", 0, off + 0.02, 0, {w, 0.04, h}));
     b.wall_parts = {bracket};
@@ -48,7 +46,7 @@ Blueprint television(Random& random) {
 // A board with pegs that point into the room.
 Blueprint coat_rack(Random& random) {
     Blueprint b("coat rack");
-    const double w = random.uniform(0.5, 1.0), t = 0.03;
+    const double w = random(0.5, 1.0), t = 0.03;
     const int board = b.box("board", 0, t / 2, 0, {w, t, 0.12});
     b.wall_parts = {board};
     const int pegs = random.integer(3, 5);
@@ -62,7 +60,7 @@ Blueprint coat_rack(Random& random) {
 // A board on two uprights that are fixed to the wall, too.
 Blueprint bracket_shelf(Random& random) {
     Blueprint b("bracket shelf");
-    const double w = random.uniform(0.6, 1.1), d = random.uniform(0.2, 0.28), t = 0.03, low = 0.18;
+    const double w = random(0.6, 1.1), d = random(0.2, 0.28), t = 0.03, low = 0.18;
     const int board = b.box("board", 0, d / 2, low, {w, d, t});
     b.wall_parts = {board};
     for (const double side : {-1.0, 1.0}) {
@@ -76,7 +74,7 @@ Blueprint bracket_shelf(Random& random) {
 
 Blueprint wall_lamp(Random& random) {
     Blueprint b("wall lamp");
-    const double ball = random.uniform(0.16, 0.24), arm = random.uniform(0.06, 0.12), t = 0.03;
+    const double ball = random(0.16, 0.24), arm = random(0.06, 0.12), t = 0.03;
     const double z = ball / 2;
     const int plate = b.box("plate", 0, t / 2, z - 0.08, {0.1, t, 0.16});
     const int bar = b.join(plate, b.bar("arm", {0, t, z}, {0, t + arm, z}, 0.03));
@@ -106,10 +104,9 @@ WallThing make_wall_thing(Random& random) {
 
 Blueprint make_hanging_lamp(Random& random) {
     Blueprint b("hanging lamp");
-    const double rod = random.uniform(0.2, 0.4), shade = random.uniform(0.18, 0.28);
+    const double rod = random(0.2, 0.4), shade = random(0.18, 0.28);
     const int stem = b.cylinder("rod", 0, 0, -rod, 0.025, rod);
-    b.join(stem, b.cone("shade", 0, 0, -rod - shade, random.uniform(0.3, 0.45), shade,
-                        random.uniform(0.2, 0.7)));
+    b.join(stem, b.cone("shade", 0, 0, -rod - shade, random(0.3, 0.45), shade, random(0.2, 0.7)));
     b.wall_parts = {stem};
     return b;
 }

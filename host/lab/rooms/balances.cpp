@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 Blueprint block(const char* name, const Vec3& size) {
     Blueprint b(name);
-    b.feet = {b.box("box", 0, 0, 0, size)};
+    b.foot(b.box("box", 0, 0, 0, size));
     return b;
 }
 
@@ -36,14 +36,13 @@ class Balancer {
     // Over a carrier's edge, the smaller part of it: `edge` is half of the carrier along its y.
     void overhang(const Pose& middle, double edge, std::int32_t carrier) {
         const Vec3 size = any_size(1, 0.8);
-        const double out = random_.uniform(0.1, 0.42) * size[1];
-        const Vec3 p =
-            moved(middle, Vec3{random_.uniform(-0.3, 0.3) * edge, edge + out - size[1] / 2, 0});
+        const double out = random_(0.1, 0.42) * size[1];
+        const Vec3 p = moved(middle, Vec3{random_(-0.3, 0.3) * edge, edge + out - size[1] / 2, 0});
         put(block("box", size), {p[0], p[1], middle.z, middle.yaw}, {carrier});
     }
 
   private:
-    double any(double low, double high) { return scale_ * random_.uniform(low, high); }
+    double any(double low, double high) { return scale_ * random_(low, high); }
     Vec3 any_size(double flat, double high) {
         return {flat * any(0.14, 0.4), flat * any(0.12, 0.32), high * any(0.08, 0.32)};
     }
@@ -62,13 +61,12 @@ class Balancer {
         const std::int32_t foot = put(block("carton", low), base, {carrier});
         if (foot < 0) return;
         const Vec3 size = any_size(1.1, 0.8);
-        const double x = random_.uniform(-0.4, 0.4) * low[0],
-                     y = random_.uniform(-0.4, 0.4) * low[1];
+        const double x = random_(-0.4, 0.4) * low[0], y = random_(-0.4, 0.4) * low[1];
         const std::int32_t top = put(block("box", size), at(base, x, y, low[2]), {foot});
         if (top < 0 || !random_.chance(0.5)) return;
         const Vec3 third = any_size(0.7, 0.7);  // over the lowest's middle
-        put(block("box", third),
-            at(base, 0.6 * x, 0.6 * y, low[2] + size[2], random_.uniform(-0.5, 0.5)), {top});
+        put(block("box", third), at(base, 0.6 * x, 0.6 * y, low[2] + size[2], random_(-0.5, 0.5)),
+            {top});
     }
 
     // A book or board that leans against a box's upper edge.
@@ -76,12 +74,11 @@ class Balancer {
         const Vec3 size = any_size(1, 1);
         const std::int32_t box = put(block("box", size), base, {carrier});
         if (box < 0) return;
-        const double lean = random_.uniform(0.12, 0.6), h = size[2];
-        const double length = h / std::cos(lean) * random_.uniform(1.04, 1.6);
+        const double lean = random_(0.12, 0.6), h = size[2];
+        const double length = h / std::cos(lean) * random_(1.04, 1.6);
         Blueprint b(length > 0.35 ? "board" : "book");
-        b.feet = {b.leaning("board", 0, size[1] / 2 + h * std::tan(lean), 0,
-                            {random_.uniform(0.4, 0.95) * size[0], any(0.015, 0.04), length},
-                            lean)};
+        b.foot(b.leaning("board", 0, size[1] / 2 + h * std::tan(lean), 0,
+                         {random_(0.4, 0.95) * size[0], any(0.015, 0.04), length}, lean));
         b.leans = b.feet;
         put(b, base, {carrier, box});
     }
@@ -93,17 +90,15 @@ class Balancer {
         const std::int32_t left = put(block("box", size), at(base, -apart / 2, 0, 0), {carrier});
         const std::int32_t right = put(block("box", size), at(base, apart / 2, 0, 0), {carrier});
         if (left < 0 || right < 0) return;
-        const double t = any(0.015, 0.04), length = (apart + size[0]) * random_.uniform(1, 1.5);
-        const double off = random_.uniform(-0.3, 0.3) * (length - apart - size[0]);
+        const double t = any(0.015, 0.04), length = (apart + size[0]) * random_(1, 1.5);
+        const double off = random_(-0.3, 0.3) * (length - apart - size[0]);
         const std::int32_t board = put(block("board", {length, any(0.15, 0.25), t}),
                                        at(base, off, 0, size[2]), {left, right});
         if (board < 0) return;
         const Stack stack = make_turned_item(random_, 0.4);
         if (!stack.empty())
             put(stack.front(),
-                at(base, random_.uniform(-0.3, 0.3) * apart, 0, size[2] + t,
-                   random_.uniform(-pi, pi)),
-                {board});
+                at(base, random_(-0.3, 0.3) * apart, 0, size[2] + t, random_(-pi, pi)), {board});
     }
 
     // Boxes with each middle well over the one below: whatever lies on top stays over all of them.
@@ -115,12 +110,11 @@ class Balancer {
             carrier = put(block(random_.chance(0.5) ? "box" : "carton", size),
                           at(base, x, y, z, yaw), {carrier});
             z += size[2];
-            size = {size[0] * random_.uniform(0.75, 1.08), size[1] * random_.uniform(0.75, 1.08),
-                    any(0.04, 0.22)};
+            size = {size[0] * random_(0.75, 1.08), size[1] * random_(0.75, 1.08), any(0.04, 0.22)};
             const double away = 0.16 * std::min({size[0], size[1], first[0], first[1]});
-            x = random_.uniform(-away, away);
-            y = random_.uniform(-away, away);
-            yaw = random_.chance(0.4) ? 0 : random_.uniform(-0.6, 0.6);
+            x = random_(-away, away);
+            y = random_(-away, away);
+            yaw = random_.chance(0.4) ? 0 : random_(-0.6, 0.6);
         }
     }
 
@@ -134,7 +128,7 @@ class Balancer {
             put(block(equal ? "carton" : "box", size),
                 at(base, x + size[0] / 2, random_.chance(0.5) ? 0 : any(-0.05, 0.05), 0),
                 {carrier});
-            x += size[0] + (random_.chance(0.7) ? 0.0002 : random_.uniform(0.001, 0.008));
+            x += size[0] + (random_.chance(0.7) ? 0.0002 : random_(0.001, 0.008));
         }
     }
 
@@ -143,7 +137,7 @@ class Balancer {
         double x = 0;
         for (int k = random_.integer(2, 5); k > 0; --k) {
             const Vec3 size{any(0.02, 0.06), any(0.12, 0.22), any(0.18, 0.34)};
-            put(block("book", size), at(base, x, 0, 0, random_.uniform(-0.2, 0.2)), {carrier});
+            put(block("book", size), at(base, x, 0, 0, random_(-0.2, 0.2)), {carrier});
             x += any(0.05, 0.2);
         }
     }
@@ -154,7 +148,7 @@ class Balancer {
         std::vector<std::int32_t> on;
         for (int k = 0; k < 3; ++k) {
             Blueprint can("can");
-            can.feet = {can.cylinder("can", 0, 0, 0, d, h)};
+            can.foot(can.cylinder("can", 0, 0, 0, d, h));
             const double a = 2 * pi * k / 3;
             on.push_back(put(can, at(base, r * std::cos(a), r * std::sin(a), 0), {carrier}));
             if (on.back() < 0) return;
@@ -164,8 +158,7 @@ class Balancer {
             put(block("tray", {side, side, any(0.02, 0.15)}), at(base, 0, 0, h), on);
         if (tray >= 0 && random_.chance(0.6)) {
             const double high = room_.placed().back().blueprint.height();
-            put(block("box", any_size(0.6, 0.8)), at(base, 0, 0, h + high, random_.uniform(-1, 1)),
-                {tray});
+            put(block("box", any_size(0.6, 0.8)), at(base, 0, 0, h + high, random_(-1, 1)), {tray});
         }
     }
 
@@ -173,6 +166,19 @@ class Balancer {
     Random& random_;
     double scale_;
 };
+
+// Boxes, or what lies about in a kitchen or on a desk.
+Stack table_item(Random& random, double clearance) {
+    if (random.chance(0.35)) {
+        Stack stack;
+        const Vec3 size{random(0.06, 0.3), random(0.05, 0.24), random(0.03, 0.26)};
+        for (int k = random.chance(0.3) ? random.integer(2, 3) : 1; k > 0; --k)
+            stack.push_back(block("box", size));
+        return stack;
+    }
+    return random.chance(0.5) ? make_kitchen_item(random, clearance)
+                              : make_desk_item(random, clearance);
+}
 
 }  // namespace
 
@@ -186,12 +192,11 @@ void furnish_precarious(Composer& room) {
         const Surface surface = at.blueprint.surfaces.back();
         const std::int32_t carrier = at.first_part + surface.part;
         const double top = table.height();
-        Balancer small(room, random.uniform(0.45, 0.8));
+        Balancer small(room, random(0.45, 0.8));
         for (int n = random.integer(2, 6); n > 0; --n) {
-            const Vec3 p =
-                moved(at.pose, Vec3{surface.x + random.uniform(-0.75, 0.75) * surface.half_x,
-                                    surface.y + random.uniform(-0.6, 0.6) * surface.half_y, 0});
-            const double yaw = random.chance(0.5) ? 0 : random.uniform(-pi, pi);
+            const Vec3 p = moved(at.pose, Vec3{surface.x + random(-0.75, 0.75) * surface.half_x,
+                                               surface.y + random(-0.6, 0.6) * surface.half_y, 0});
+            const double yaw = random.chance(0.5) ? 0 : random(-pi, pi);
             small.build_at({p[0], p[1], top, at.pose.yaw + yaw}, carrier);
         }
         if (random.chance(0.6)) {
@@ -199,12 +204,11 @@ void furnish_precarious(Composer& room) {
             small.overhang({p[0], p[1], top, at.pose.yaw}, surface.half_y + 0.005, carrier);
         }
     }
-    Balancer large(room, random.uniform(0.9, 1.7));
+    Balancer large(room, random(0.9, 1.7));
     const Vec3& size = room.world().room;
     for (int n = random.integer(4, 12); n > 0; --n) {
-        const double yaw = random.chance(0.4) ? 0 : random.uniform(-pi, pi);
-        large.build_at(
-            {random.uniform(0.4, size[0] - 0.4), random.uniform(0.4, size[1] - 0.4), 0, yaw}, 0);
+        const double yaw = random.chance(0.4) ? 0 : random(-pi, pi);
+        large.build_at({random(0.4, size[0] - 0.4), random(0.4, size[1] - 0.4), 0, yaw}, 0);
     }
     for (int k = random.integer(0, 2); k > 0; --k) room.leaning(make_leaning_thing(random));
 }
@@ -226,27 +230,15 @@ void furnish_tabletop(Composer& room) {
     const Composer::Placed at = room.placed()[table];
     const Surface surface = at.blueprint.surfaces.back();
     if (random.chance(0.5)) {
-        Balancer small(room, random.uniform(0.35, 0.7));
+        Balancer small(room, random(0.35, 0.7));
         for (int n = random.integer(1, 4); n > 0; --n) {
-            const Vec3 p =
-                moved(at.pose, Vec3{surface.x + random.uniform(-0.7, 0.7) * surface.half_x,
-                                    surface.y + random.uniform(-0.6, 0.6) * surface.half_y, 0});
-            small.build_at({p[0], p[1], at.blueprint.height(), at.pose.yaw + random.uniform(-1, 1)},
+            const Vec3 p = moved(at.pose, Vec3{surface.x + random(-0.7, 0.7) * surface.half_x,
+                                               surface.y + random(-0.6, 0.6) * surface.half_y, 0});
+            small.build_at({p[0], p[1], at.blueprint.height(), at.pose.yaw + random(-1, 1)},
                            at.first_part + surface.part);
         }
     }
-    room.fill(table, random.uniform(6, 26), [](Random& random, double clearance) -> Stack {
-        if (random.chance(0.35)) {
-            Stack stack;
-            const Vec3 size{random.uniform(0.06, 0.3), random.uniform(0.05, 0.24),
-                            random.uniform(0.03, 0.26)};
-            for (int k = random.chance(0.3) ? random.integer(2, 3) : 1; k > 0; --k)
-                stack.push_back(block("box", size));
-            return stack;
-        }
-        return random.chance(0.5) ? make_kitchen_item(random, clearance)
-                                  : make_desk_item(random, clearance);
-    });
+    room.fill(table, random(6, 26), table_item);
 }
 
 }  // namespace topple::scenes

@@ -186,8 +186,8 @@ Building::Building(const BuildingOptions& options) : options_(options) {
         static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(per_storey_))));
     const std::size_t rows = (per_storey_ + columns - 1) / columns;
     Random width(options.seed, columns_stream), depth(options.seed, rows_stream);
-    for (std::size_t k = 0; k < columns; ++k) widths_.push_back(width.uniform(3.9, 6.2));
-    for (std::size_t k = 0; k < rows; ++k) depths_.push_back(depth.uniform(3.5, 5.2));
+    for (std::size_t k = 0; k < columns; ++k) widths_.push_back(width(3.9, 6.2));
+    for (std::size_t k = 0; k < rows; ++k) depths_.push_back(depth(3.5, 5.2));
 }
 
 Building::Cell Building::cell(std::size_t id) const {
@@ -215,7 +215,7 @@ std::vector<Building::Door> Building::doors(std::size_t id, const Vec3& size) co
         if (!has(beyond, door.to)) continue;
         door.wall = wall;
         Random random(options_.seed, doors_stream + 2 * std::min(id, door.to) + axis_of(wall));
-        const double middle = size[axis_of(wall)] * random.uniform(0.36, 0.64);
+        const double middle = size[axis_of(wall)] * random(0.36, 0.64);
         door.opening = at_wall(wall, size, {middle - door_width_m / 2, middle + door_width_m / 2},
                                0, half_wall, {0, door_height_m});
         all.push_back(door);
@@ -232,7 +232,7 @@ Building::Room Building::room(std::size_t id) const {
     for (std::size_t k = 0; k < at.row; ++k) room.origin[1] += depths_[k] + wall_m;
     room.origin[2] = static_cast<double>(at.storey) * storey_m;
     Random height(options_.seed, heights_stream + at.storey);
-    const Vec3 size{widths_[at.column], depths_[at.row], height.uniform(2.6, 2.8)};
+    const Vec3 size{widths_[at.column], depths_[at.row], height(2.6, 2.8)};
     room.doors = doors(id, size);
     RoomOptions furnished{.seed = Random(options_.seed, id).next(), .varied = options_.varied};
     furnished.size = size;

@@ -106,11 +106,11 @@ bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempt
         const double low = mirrored ? -box[1][0] : box[0][0],
                      high = mirrored ? -box[0][0] : box[1][0];
         if (high - low > length) continue;
-        double along = random_.uniform(-low, length - high);
+        double along = random_(-low, length - high);
         if (random_.chance(0.15)) along = random_.chance(0.5) ? -low : length - high;
-        double turn = 0, off = skirting_ + (random_.chance(0.5) ? 0 : random_.uniform(0, 0.04));
+        double turn = 0, off = skirting_ + (random_.chance(0.5) ? 0 : random_(0, 0.04));
         if (!built_in && random_.chance(0.12)) {
-            turn = random_.uniform(-0.15, 0.15);
+            turn = random_(-0.15, 0.15);
             off += std::abs(turn) * (box[1][0] - box[0][0]) / 2 + 0.02;
         } else if (random_.chance(0.5) && !placed_.empty()) {  // flush with a neighbour
             const Placed& next = placed_[static_cast<std::size_t>(
@@ -118,7 +118,7 @@ bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempt
             const auto its = next.blueprint.bounds();
             const double at = wall < 2 ? next.pose.x : next.pose.y;
             const double reach = mirrored ? -its[0][0] : its[1][0];
-            along = at + reach - low + (random_.chance(0.5) ? 0.0002 : random_.uniform(0, 0.01));
+            along = at + reach - low + (random_.chance(0.5) ? 0.0002 : random_(0, 0.01));
             if (along + high > length) continue;
         }
         if (built_in) off = 0;
@@ -132,7 +132,7 @@ std::vector<std::size_t> Composer::row(int wall, double from, double to, double 
                                        const std::function<Blueprint()>& make) {
     std::vector<std::size_t> found;
     const bool mirrored = wall == 1 || wall == 2;
-    const double off = skirting_ + (random_.chance(0.6) ? 0 : random_.uniform(0, 0.05));
+    const double off = skirting_ + (random_.chance(0.6) ? 0 : random_(0, 0.05));
     for (double at = from; at < to;) {
         const Blueprint one = make();
         const auto box = one.bounds();
@@ -141,7 +141,7 @@ std::vector<std::size_t> Composer::row(int wall, double from, double to, double 
         const double low = mirrored ? -box[1][0] : box[0][0];
         if (stand(one, against_wall(wall, at - low, off - one.back(), 0, 0), {0}, "floor")) {
             found.push_back(placed_.size() - 1);
-            at += wide + (random_.chance(loose) ? random_.uniform(0.003, 0.06) : 0.0002);
+            at += wide + (random_.chance(loose) ? random_(0.003, 0.06) : 0.0002);
         } else {
             at += 0.25;
         }
@@ -157,7 +157,7 @@ bool Composer::on_wall(const Blueprint& blueprint, double height) {
         const double half = std::max(box[1][0], -box[0][0]), length = wall_length(wall);
         if (2 * half > length || height + box[1][2] > world_.room[2]) continue;
         const Pose pose =
-            against_wall(wall, random_.uniform(half, length - half), -blueprint.back(), height, 0);
+            against_wall(wall, random_(half, length - half), -blueprint.back(), height, 0);
         // Only where there is wall behind: a nail's hole into it must end in a solid.
         const Vec3 nail =
             moved(pose, Vec3{0, blueprint.back() - 0.02, (box[0][2] + box[1][2]) / 2});
@@ -174,10 +174,8 @@ bool Composer::anywhere(const Blueprint& blueprint, int attempts) {
     const double reach = std::max({box[1][0], -box[0][0], box[1][1], -box[0][1]});
     for (int attempt = 0; attempt < attempts; ++attempt) {
         const double r = std::min({reach, world_.room[0] / 2, world_.room[1] / 2});
-        const double yaw =
-            random_.chance(0.4) ? random_.integer(0, 3) * pi / 2 : random_.uniform(-pi, pi);
-        const Pose pose{random_.uniform(r, world_.room[0] - r),
-                        random_.uniform(r, world_.room[1] - r), 0, yaw};
+        const double yaw = random_.chance(0.4) ? random_.integer(0, 3) * pi / 2 : random_(-pi, pi);
+        const Pose pose{random_(r, world_.room[0] - r), random_(r, world_.room[1] - r), 0, yaw};
         if (stand(blueprint, pose, {0}, "floor")) return true;
     }
     return false;
@@ -188,12 +186,12 @@ bool Composer::before(std::size_t table, int side, const Blueprint& chair) {
     const auto box = at.blueprint.bounds(), its = chair.bounds();
     for (int attempt = 0; attempt < 25; ++attempt) {
         // The chair's back is at its low y: it faces the table, pushed in from the side.
-        const double in = random_.uniform(-0.35, 0.75) * (its[1][1] - its[0][1]);
+        const double in = random_(-0.35, 0.75) * (its[1][1] - its[0][1]);
         const double most = random_.chance(0.3) ? 1.4 : 0.4;
-        const double turn = random_.chance(0.4) ? 0 : random_.uniform(-most, most);
+        const double turn = random_.chance(0.4) ? 0 : random_(-most, most);
         const bool ends = side >= 2, low = side % 2 == 1;
         const std::size_t a = ends ? 1 : 0;
-        const double s = random_.uniform(0.75 * box[0][a], 0.75 * box[1][a]);
+        const double s = random_(0.75 * box[0][a], 0.75 * box[1][a]);
         const double edge = (low ? -box[0][1 - a] : box[1][1 - a]) + its[1][1] - std::max(0.0, in) +
                             (in < 0 ? -in : 0);
         const double out = low ? -edge : edge;
@@ -228,8 +226,8 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
     const double top = world_.parts[static_cast<std::size_t>(base.first_part + surface.part)].top();
     for (int attempt = 0; attempt < 12; ++attempt) {
         const double yaw = random_.chance(0.45)  ? 0
-                           : random_.chance(0.5) ? random_.uniform(-0.25, 0.25)
-                                                 : random_.uniform(-pi, pi);
+                           : random_.chance(0.5) ? random_(-0.25, 0.25)
+                                                 : random_(-pi, pi);
         Vec3 low{1e9, 1e9, 0}, high_corner{-1e9, -1e9, 0};
         for (const int foot : stack.front().feet) {
             const auto box =
@@ -254,7 +252,7 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
             if (std::abs(last.pose.z - top) < 1e-9) {
                 const double side = random_.chance(0.5) ? 1 : -1;
                 const double off = side > 0 ? its[1][0] - ours[0][0] : its[0][0] - ours[1][0];
-                const double slack = random_.chance(0.5) ? 0.0003 : random_.uniform(0, 0.006);
+                const double slack = random_.chance(0.5) ? 0.0003 : random_(0, 0.006);
                 const Vec3 beside = moved(last.pose, Vec3{off + side * slack, 0, 0});
                 const Pose back{-base.pose.x, -base.pose.y, 0, 0};
                 const Vec3 local = moved(Pose{0, 0, 0, -base.pose.yaw}, moved(back, beside));
@@ -268,7 +266,7 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
         for (std::size_t k = 1; k < stack.size(); ++k) {
             const std::int32_t below = placed_.back().first_part;
             pose.z += stack[k - 1].height();
-            const Pose turned{pose.x, pose.y, pose.z, pose.yaw + random_.uniform(-0.1, 0.1)};
+            const Pose turned{pose.x, pose.y, pose.z, pose.yaw + random_(-0.1, 0.1)};
             if (!stand(stack[k], turned, {below}, surface.where)) break;
         }
         return true;
@@ -281,8 +279,7 @@ void Composer::fill(std::size_t index, double per_m2, const Make& make) {
     for (const Surface& surface : surfaces) {
         if (surface.half_x <= 0 || surface.half_y <= 0) continue;
         const double expected = per_m2 * 4 * surface.half_x * surface.half_y;
-        const int count =
-            static_cast<int>(expected * random_.uniform(0.3, 1.5) + random_.uniform());
+        const int count = static_cast<int>(expected * random_(0.3, 1.5) + random_.uniform());
         for (int k = 0; k < std::min(count, 40); ++k)
             on_surface(index, surface, make(random_, surface.clearance));
     }
@@ -297,7 +294,7 @@ bool Composer::leaning(const Blueprint& blueprint) {
     if (skirting_ > 0) return false;
     for (int attempt = 0; attempt < 25; ++attempt) {
         const int wall = any_wall();
-        const double along = random_.uniform(0.2, wall_length(wall) - 0.2);
+        const double along = random_(0.2, wall_length(wall) - 0.2);
         const Pose pose = against_wall(wall, along, -blueprint.back(), 0, 0);
         if (wall_part_[static_cast<std::size_t>(wall)] < 0) continue;
         if (stand(blueprint, pose, {0}, "wall")) return true;

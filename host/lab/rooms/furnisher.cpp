@@ -36,8 +36,8 @@ std::int32_t Furnisher::add_room_part(const char* name, double x, double y, doub
 }
 
 void Furnisher::build_room() {
-    const double width = random_.uniform(3.9, 6.2), depth = random_.uniform(3.5, 5.2);
-    const double height = random_.uniform(2.35, 2.8), t = wall_thickness;
+    const double width = random_(3.9, 6.2), depth = random_(3.5, 5.2);
+    const double height = random_(2.35, 2.8), t = wall_thickness;
     world_.room = size_.value_or(Vec3{width, depth, height});
     const auto [w, d, h] = world_.room;
     world_.objects.push_back({"room", "room"});
@@ -47,7 +47,7 @@ void Furnisher::build_room() {
     add_room_part("wall", -t / 2, d / 2, 0, {t, d, h}, {floor_part});
     add_room_part("wall", w + t / 2, d / 2, 0, {t, d, h}, {floor_part});
     if (random_.chance(0.3)) {
-        const double s = random_.uniform(0.25, 0.45);
+        const double s = random_(0.25, 0.45);
         add_corner("pillar", {s, s, h}, random_.chance(0.5), random_.chance(0.5));
     }
 }
@@ -107,8 +107,8 @@ Pose Furnisher::at_wall(std::int32_t wall, double along, double off, double z, d
 bool Furnisher::place_along_wall(const Blueprint& blueprint, int attempts) {
     for (int attempt = 0; attempt < attempts; ++attempt) {
         const auto wall = static_cast<std::int32_t>(random_.integer(1, 4));
-        const double turn = random_.chance(0.25) ? random_.uniform(-0.12, 0.12) : 0;
-        const double off = random_.uniform(0.02, 0.06) + (turn == 0 ? 0 : 0.1) - blueprint.back();
+        const double turn = random_.chance(0.25) ? random_(-0.12, 0.12) : 0;
+        const double off = random_(0.02, 0.06) + (turn == 0 ? 0 : 0.1) - blueprint.back();
         const Pose pose = at_wall(wall, random_.uniform(), off, 0, turn);
         if (!fits(blueprint, pose, floor_part, -1)) continue;
         place(blueprint, pose, floor_part, -1, "floor");
@@ -119,8 +119,8 @@ bool Furnisher::place_along_wall(const Blueprint& blueprint, int attempts) {
 
 bool Furnisher::place_anywhere(const Blueprint& blueprint, int attempts) {
     for (int attempt = 0; attempt < attempts; ++attempt) {
-        const double x = random_.uniform(0, world_.room[0]), y = random_.uniform(0, world_.room[1]);
-        const Pose pose{x, y, 0, random_.uniform(-pi, pi)};
+        const double x = random_(0, world_.room[0]), y = random_(0, world_.room[1]);
+        const Pose pose{x, y, 0, random_(-pi, pi)};
         if (!fits(blueprint, pose, floor_part, -1)) continue;
         place(blueprint, pose, floor_part, -1, "floor");
         return true;
@@ -142,7 +142,7 @@ bool Furnisher::place_in_plane_of_wall(const Blueprint& blueprint, std::int32_t 
 }
 
 bool Furnisher::place_at_wall(const Blueprint& blueprint, double lowest, double highest) {
-    return place_in_plane_of_wall(blueprint, -1, [&] { return random_.uniform(lowest, highest); });
+    return place_in_plane_of_wall(blueprint, -1, [&] { return random_(lowest, highest); });
 }
 
 bool Furnisher::place_leaning(const Blueprint& blueprint) {
@@ -153,10 +153,10 @@ bool Furnisher::place_before(std::size_t table, const Blueprint& chair) {
     const Placed at = placed_[table];
     const auto box = at.blueprint.bounds();
     for (int attempt = 0; attempt < 40; ++attempt) {
-        const double x = random_.uniform(0.6 * box[0][0], 0.6 * box[1][0]);
-        const double y = box[1][1] + random_.uniform(0.02, 0.3);
+        const double x = random_(0.6 * box[0][0], 0.6 * box[1][0]);
+        const double y = box[1][1] + random_(0.02, 0.3);
         const Vec3 p = moved(at.pose, Vec3{x, y, 0});
-        const Pose pose{p[0], p[1], 0, at.pose.yaw + pi + random_.uniform(-0.35, 0.35)};
+        const Pose pose{p[0], p[1], 0, at.pose.yaw + pi + random_(-0.35, 0.35)};
         if (!fits(chair, pose, floor_part, -1)) continue;
         place(chair, pose, floor_part, -1, "floor");
         return true;
@@ -168,12 +168,11 @@ std::optional<Furnisher::Spot> Furnisher::spot_on(const Placed& base, const Surf
                                                   const Reach& reach,
                                                   const std::function<bool(const Pose&)>& free) {
     for (int attempt = 0; attempt < 15; ++attempt) {
-        const double yaw =
-            random_.chance(0.4) ? random_.uniform(-0.3, 0.3) : random_.uniform(-pi, pi);
+        const double yaw = random_.chance(0.4) ? random_(-0.3, 0.3) : random_(-pi, pi);
         const auto far = reach(yaw);
         const double room_x = surface.half_x - far[0], room_y = surface.half_y - far[1];
         if (room_x < 0 || room_y < 0) continue;
-        const double u = random_.uniform(-room_x, room_x), v = random_.uniform(-room_y, room_y);
+        const double u = random_(-room_x, room_x), v = random_(-room_y, room_y);
         const Part& carrier = base.blueprint.parts[static_cast<std::size_t>(surface.part)];
         const Vec3 p = moved(base.pose, Vec3{surface.x + u, surface.y + v, carrier.top()});
         const Pose pose{p[0], p[1], p[2], base.pose.yaw + yaw};

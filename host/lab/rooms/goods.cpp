@@ -19,9 +19,9 @@ void load_pallet(Composer& room, std::size_t index) {
     const int nx = random.integer(1, 3), ny = random.integer(1, 2), layers = random.integer(1, 4);
     const double w = 2 * surface.half_x / nx, d = 2 * surface.half_y / ny;
     const std::vector<std::int32_t> planks = room.deck(index, surface);
-    const double h = random.uniform(0.18, 0.4), top = at.blueprint.height();
+    const double h = random(0.18, 0.4), top = at.blueprint.height();
     const bool flush = random.chance(0.5);
-    const Vec3 size{w - random.uniform(0.001, 0.03), d - random.uniform(0.001, 0.03), h};
+    const Vec3 size{w - random(0.001, 0.03), d - random(0.001, 0.03), h};
     Blueprint load("load");
     load.pile = true;
     std::vector<std::int32_t> below(static_cast<std::size_t>(nx * ny), -1);
@@ -39,7 +39,7 @@ void load_pallet(Composer& room, std::size_t index) {
                 continue;
             }
             Blueprint carton("carton");
-            carton.feet = {carton.box("box", 0, 0, 0, size)};
+            carton.foot(carton.box("box", 0, 0, 0, size));
             const Vec3 p = moved(at.pose, Vec3{x, y, 0});
             const auto on = layer == 0 ? planks : std::vector<std::int32_t>{carrier};
             const Pose pose{p[0], p[1], top + layer * h, at.pose.yaw};
@@ -53,15 +53,15 @@ void aisles(Composer& room, double aisle, Blueprint (*make)(Random&), double clu
             Stack (*goods)(Random&, double)) {
     Random& random = room.random();
     const Vec3& size = room.world().room;
-    for (double y = aisle + 0.9; y < size[1] - aisle - 0.4; y += aisle + random.uniform(0.9, 1.3)) {
-        double x = random.uniform(aisle, 1.6 * aisle);
+    for (double y = aisle + 0.9; y < size[1] - aisle - 0.4; y += aisle + random(0.9, 1.3)) {
+        double x = random(aisle, 1.6 * aisle);
         while (x < size[0] - aisle) {
             const Blueprint one = make(random);
             const auto box = one.bounds();
             if (x + box[1][0] - box[0][0] > size[0] - aisle) break;
             if (room.stand(one, {x - box[0][0], y, 0, random.chance(0.9) ? 0 : pi}, {0}, "floor"))
                 room.fill(room.placed().size() - 1, clutter, goods);
-            x += box[1][0] - box[0][0] + (random.chance(0.6) ? 0.001 : random.uniform(0.3, 1.2));
+            x += box[1][0] - box[0][0] + (random.chance(0.6) ? 0.001 : random(0.3, 1.2));
         }
     }
 }

@@ -12,7 +12,7 @@ namespace {
 
 // Things per m^2 of surface: from tidy to crowded.
 double any_clutter(Random& random) {
-    return random.uniform(1, 4) * random.uniform(1, 4);
+    return random(1, 4) * random(1, 4);
 }
 
 // Chairs around the last thing placed, some tucked under it.
@@ -45,28 +45,27 @@ double fitted_run(Composer& room, int wall, double from, double to) {
             const auto box = free.bounds();
             const double w = box[1][0] - box[0][0];
             if (at + w > to) break;
-            const double slack = random.uniform(0.001, 0.02);
-            const Pose pose =
-                room.against_wall(wall, at + slack + w / 2,
-                                  room.skirting() + random.uniform(0, 0.04) - free.back(), 0, 0);
+            const double slack = random(0.001, 0.02);
+            const Pose pose = room.against_wall(
+                wall, at + slack + w / 2, room.skirting() + random(0, 0.04) - free.back(), 0, 0);
             if (room.stand(free, pose, {0}, "floor"))
                 at += w + 2 * slack;
             else
                 at += 0.3;
             continue;
         }
-        const double length = std::min(to - at, random.uniform(0.6, 2.6));
+        const double length = std::min(to - at, random(0.6, 2.6));
         const Blueprint counter = make_counter(random, length);
         const bool done = room.fix(
             counter,
             room.against_wall(wall, at + length / 2, room.skirting() - counter.back(), 0, 0));
         if (done && random.chance(0.6)) {
-            const double above = random.uniform(1.32, 1.55);
+            const double above = random(1.32, 1.55);
             if (random.chance(0.25) && length > 1) {
                 room.fix(make_hood(random),
                          room.against_wall(wall, at + length / 2, 0, above + 0.1, 0));
             } else {
-                const double wide = random.uniform(0.5, 1) * length;
+                const double wide = random(0.5, 1) * length;
                 const Blueprint cupboards = make_wall_cupboards(random, wide);
                 if (above + cupboards.height() < room.world().room[2])
                     room.fix(cupboards, room.against_wall(wall, at + wide / 2, 0, above, 0));
@@ -83,17 +82,16 @@ void furnish_kitchen(Composer& room) {
     Random& random = room.random();
     const int wall = room.any_wall();
     const double length = room.wall_length(wall);
-    fitted_run(room, wall, room.skirting() + (random.chance(0.6) ? 0.001 : random.uniform(0, 0.8)),
-               length * random.uniform(0.55, 1.0));
+    fitted_run(room, wall, room.skirting() + (random.chance(0.6) ? 0.001 : random(0, 0.8)),
+               length * random(0.55, 1.0));
     if (random.chance(0.5)) {
         const int next = room.any_wall();
-        if (next != wall)
-            fitted_run(room, next, 0.68, room.wall_length(next) * random.uniform(0.4, 1));
+        if (next != wall) fitted_run(room, next, 0.68, room.wall_length(next) * random(0.4, 1));
     }
     if (random.chance(0.3)) {  // an island
-        const Blueprint island = make_counter(random, random.uniform(0.9, 1.8));
+        const Blueprint island = make_counter(random, random(0.9, 1.8));
         const Vec3& size = room.world().room;
-        room.fix(island, {size[0] * random.uniform(0.4, 0.6), size[1] * random.uniform(0.4, 0.6), 0,
+        room.fix(island, {size[0] * random(0.4, 0.6), size[1] * random(0.4, 0.6), 0,
                           random.integer(0, 3) * std::numbers::pi / 2});
     }
     for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_free_cupboard(random));
@@ -104,7 +102,7 @@ void furnish_kitchen(Composer& room) {
         if (random.chance(0.5) ? room.anywhere(table) : room.along_wall(table))
             seat(room, room.last(), random.integer(1, 5));
     }
-    if (random.chance(0.3)) room.on_wall(make_wall_shelf(random), random.uniform(1.2, 1.6));
+    if (random.chance(0.3)) room.on_wall(make_wall_shelf(random), random(1.2, 1.6));
     room.fill_all(any_clutter(random), make_kitchen_item);
     if (random.chance(0.6)) room.along_wall(make_basket(random));
     scatter_on_floor(room, 3, make_home_item);
@@ -115,9 +113,8 @@ void furnish_bathroom(Composer& room) {
     room.along_wall(make_bath(random), true);
     room.along_wall(make_toilet(random), true);
     for (int k = random.integer(1, 2); k > 0; --k) room.along_wall(make_basin(random), true);
-    if (random.chance(0.6)) room.on_wall(make_towel_rail(random), random.uniform(1.0, 1.5));
-    if (random.chance(0.6))
-        room.on_wall(make_wall_cupboards(random, random.uniform(0.4, 0.9)), 1.35);
+    if (random.chance(0.6)) room.on_wall(make_towel_rail(random), random(1.0, 1.5));
+    if (random.chance(0.6)) room.on_wall(make_wall_cupboards(random, random(0.4, 0.9)), 1.35);
     if (random.chance(0.7)) room.along_wall(make_bookcase(random, 1.8));
     if (random.chance(0.5)) room.along_wall(make_drawer_unit(random));
     if (random.chance(0.5)) room.along_wall(make_appliance(random));
@@ -128,8 +125,7 @@ void furnish_bathroom(Composer& room) {
 
 void furnish_bedroom(Composer& room) {
     Random& random = room.random();
-    if (random.chance(0.5))
-        room.along_wall(make_built_in_wardrobe(random, random.uniform(0.9, 2.6)), true);
+    if (random.chance(0.5)) room.along_wall(make_built_in_wardrobe(random, random(0.9, 2.6)), true);
     const Blueprint bed = make_double_bed(random);
     if (room.along_wall(bed)) {
         const Composer::Placed at = room.placed().back();
@@ -164,10 +160,9 @@ void furnish_living_room(Composer& room) {
     Random& random = room.random();
     if (random.chance(0.5)) {  // a carpet is the floor's, a thick one a thing
         const Vec3& size = room.world().room;
-        const double t = random.uniform(0.004, 0.014);
-        room.add_building_box(
-            "carpet", size[0] / 2, size[1] / 2, -0.0001,
-            {random.uniform(0.3, 0.6) * size[0], random.uniform(0.3, 0.6) * size[1], t});
+        const double t = random(0.004, 0.014);
+        room.add_building_box("carpet", size[0] / 2, size[1] / 2, -0.0001,
+                              {random(0.3, 0.6) * size[0], random(0.3, 0.6) * size[1], t});
     }
     for (int k = random.integer(1, 3); k > 0; --k) {
         if (random.chance(0.75))
@@ -188,11 +183,11 @@ void furnish_living_room(Composer& room) {
         if (room.anywhere(make_work_table(random))) seat(room, room.last(), random.integer(1, 6));
     }
     for (int k = random.integer(0, 3); k > 0; --k)
-        room.along_wall(make_bush(random, random.uniform(0.7, 1.6)));
+        room.along_wall(make_bush(random, random(0.7, 1.6)));
     for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_lamp_on_pole(random));
     if (random.chance(0.3)) room.along_wall(make_arc_lamp(random));
     for (int k = random.integer(0, 2); k > 0; --k)
-        room.on_wall(make_wall_shelf(random), random.uniform(1.1, 1.6));
+        room.on_wall(make_wall_shelf(random), random(1.1, 1.6));
     const double clutter = any_clutter(random);
     const std::size_t count = room.placed().size();
     for (std::size_t k = 0; k < count; ++k) {

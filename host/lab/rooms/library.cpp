@@ -38,9 +38,9 @@ void line_walls(Composer& room, const BookcaseMake& make) {
     for (const int wall : room.walls()) {
         if (random.chance(0.25)) continue;
         const double length = room.wall_length(wall);
-        const double from = random.chance(0.5) ? room.skirting() + 0.001 : random.uniform(0.3, 2);
-        if (random.chance(0.3)) one.height = std::min(make.height, random.uniform(1.2, 2.4));
-        const auto row = room.row(wall, from, length * random.uniform(0.6, 1), 0.2,
+        const double from = random.chance(0.5) ? room.skirting() + 0.001 : random(0.3, 2);
+        if (random.chance(0.3)) one.height = std::min(make.height, random(1.2, 2.4));
+        const auto row = room.row(wall, from, length * random(0.6, 1), 0.2,
                                   [&] { return make_case_of_books(random, one); });
         for (const std::size_t index : row) shelve_books(room, index, one);
     }
@@ -49,22 +49,27 @@ void line_walls(Composer& room, const BookcaseMake& make) {
 // Rows of cases across the room, end to end.
 void stand_in_rows(Composer& room, const BookcaseMake& make) {
     Random& random = room.random();
-    const double aisle = random.uniform(0.9, 1.9), deep = (make.two_sided ? 2 : 1) * make.depth;
+    const double aisle = random(0.9, 1.9), deep = (make.two_sided ? 2 : 1) * make.depth;
     const bool turned = random.chance(0.5);
     const Vec3& size = room.world().room;
     const double across = size[turned ? 0 : 1], along = size[turned ? 1 : 0];
-    const double skew = random.chance(0.15) ? random.uniform(-0.1, 0.1) : 0;
-    const double first = random.uniform(0.6, 1.5), last = along - random.uniform(0.6, 2.5);
+    const double skew = random.chance(0.15) ? random(-0.1, 0.1) : 0;
+    const double first = random(0.6, 1.5), last = along - random(0.6, 2.5);
     for (double y = aisle + 0.6; y < across - aisle - 0.4; y += aisle + deep) {
         if (random.chance(0.1)) continue;
         for (double x = first + make.width / 2; x < last - make.width / 2;
-             x += make.width + (random.chance(0.85) ? 0.0004 : random.uniform(0.01, 0.7))) {
+             x += make.width + (random.chance(0.85) ? 0.0004 : random(0.01, 0.7))) {
             const double flip = make.two_sided || random.chance(0.8) ? 0 : pi;
             const Pose pose{turned ? y : x, turned ? x : y, 0, (turned ? pi / 2 : 0) + flip + skew};
             if (room.stand(make_case_of_books(random, make), pose, {0}, "floor"))
                 shelve_books(room, room.last(), make);
         }
     }
+}
+
+Stack reading(Random& random, double clearance) {
+    return random.chance(0.6) ? make_shelf_item(random, std::min(clearance, 0.35))
+                              : make_desk_item(random, clearance);
 }
 
 void place_tables(Composer& room) {
@@ -78,10 +83,7 @@ void place_tables(Composer& room) {
         const std::size_t table = room.last();
         for (int c = show ? 0 : random.integer(1, 6); c > 0; --c)
             room.before(table, random.integer(0, 3), chair);
-        room.fill(table, show ? 7 : 2, [](Random& random, double clearance) {
-            return random.chance(0.6) ? make_shelf_item(random, std::min(clearance, 0.35))
-                                      : make_desk_item(random, clearance);
-        });
+        room.fill(table, show ? 7 : 2, reading);
     }
     if (random.chance(0.7)) {
         if (random.chance(0.5) ? room.anywhere(make_service_desk(random))
@@ -107,7 +109,7 @@ void furnish_library(Composer& room) {
     for (int k = random.integer(0, 2); k > 0; --k)
         room.anywhere(random.chance(0.5) ? make_bolster_armchair(random) : make_ottoman(random));
     leave_on_floor(room, random.integer(0, 4));
-    if (random.chance(0.4)) room.along_wall(make_bush(random, random.uniform(0.7, 1.4)));
+    if (random.chance(0.4)) room.along_wall(make_bush(random, random(0.7, 1.4)));
     if (random.chance(0.3)) room.anywhere(make_step_ladder(random));
 }
 

@@ -13,20 +13,19 @@ void furnish_lounge(Composer& room) {
     Random& random = room.random();
     const Vec3& size = room.world().room;
     if (random.chance(0.5))
-        room.add_building_box("carpet", size[0] * random.uniform(0.35, 0.65),
-                              size[1] * random.uniform(0.35, 0.65), -0.0001,
-                              {random.uniform(0.2, 0.6) * size[0],
-                               random.uniform(0.2, 0.6) * size[1], random.uniform(0.004, 0.014)});
+        room.add_building_box(
+            "carpet", size[0] * random(0.35, 0.65), size[1] * random(0.35, 0.65), -0.0001,
+            {random(0.2, 0.6) * size[0], random(0.2, 0.6) * size[1], random(0.004, 0.014)});
     for (int k = random.integer(0, 2); k > 0; --k)
-        room.on_wall(make_wall_curtain(random, random.uniform(0.4, 2.2),
-                                       std::min(size[2] - 0.05, random.uniform(2.0, 2.6))),
-                     0);
+        room.on_wall(
+            make_wall_curtain(random, random(0.4, 2.2), std::min(size[2] - 0.05, random(2.0, 2.6))),
+            0);
     if (random.chance(0.5)) room.along_wall(make_corner_sofa(random));
     if (random.chance(0.6)) {  // side by side
         const Blueprint like = make_couch(random);
         const bool equal = random.chance(0.6);
-        const double from = random.uniform(0.05, 1);
-        room.row(room.any_wall(), from, from + random.uniform(2, 5), 0.5,
+        const double from = random(0.05, 1);
+        room.row(room.any_wall(), from, from + random(2, 5), 0.5,
                  [&] { return equal ? like : make_couch(random); });
     }
     const std::size_t seats = room.placed().size();
@@ -50,9 +49,9 @@ void furnish_lounge(Composer& room) {
     }
     for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_bookcase(random, 2.2));
     for (int k = random.integer(0, 3); k > 0; --k)
-        room.along_wall(make_bush(random, random.uniform(0.6, 1.6)));
+        room.along_wall(make_bush(random, random(0.6, 1.6)));
     for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_lamp_on_pole(random));
-    const double clutter = random.uniform(1, 9);
+    const double clutter = random(1, 9);
     const std::size_t count = room.placed().size();
     for (std::size_t k = 0; k < count; ++k) {
         const bool soft = room.placed()[k].blueprint.name == "sofa";

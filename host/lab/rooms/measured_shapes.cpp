@@ -159,9 +159,8 @@ World measured_world(const MeasuredShape& shape, std::uint64_t seed) {
     world.room = {floor_m, floor_m, wall_m};
     world.objects = {{"room", "room"}, {shape.name, shape.on_table ? "table-middle" : "floor"}};
     // About the middle of the room; its walls run along x and y, and the shape askew.
-    const double yaw = random.uniform(0.1, 1.4), cosine = std::cos(yaw), sine = std::sin(yaw);
-    const Vec3 at{random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05),
-                  shape.on_table ? table_m : 0};
+    const double yaw = random(0.1, 1.4), cosine = std::cos(yaw), sine = std::sin(yaw);
+    const Vec3 at{random(-0.05, 0.05), random(-0.05, 0.05), shape.on_table ? table_m : 0};
     const auto put = [&](Part part, std::int32_t object) {
         part.object = object;
         world.parts.push_back(std::move(part));

@@ -16,38 +16,36 @@ enum class Material { white, wood, metal, dark, cloth, leaf, earth, paper, carto
 
 Rgb shade_of(Material material, Random& random) {
     const auto grey = [&](double low, double high) {
-        const double g = random.uniform(low, high);
-        return Rgb{g, g * random.uniform(0.97, 1.02), g * random.uniform(0.94, 1.02)};
+        const double g = random(low, high);
+        return Rgb{g, g * random(0.97, 1.02), g * random(0.94, 1.02)};
     };
     switch (material) {
         case Material::white:
             return grey(185, 245);
         case Material::wood: {
-            const double light = random.uniform(0.35, 1);
-            return {light * random.uniform(190, 225), light * random.uniform(140, 180),
-                    light * random.uniform(85, 135)};
+            const double light = random(0.35, 1);
+            return {light * random(190, 225), light * random(140, 180), light * random(85, 135)};
         }
         case Material::metal:
             return grey(90, 200);
         case Material::dark:
             return grey(20, 75);
         case Material::leaf:
-            return {random.uniform(30, 90), random.uniform(90, 160), random.uniform(25, 70)};
+            return {random(30, 90), random(90, 160), random(25, 70)};
         case Material::earth:
-            return {random.uniform(100, 190), random.uniform(70, 120), random.uniform(45, 90)};
+            return {random(100, 190), random(70, 120), random(45, 90)};
         case Material::paper:
             return grey(210, 250);
         case Material::carton:
-            return {random.uniform(150, 205), random.uniform(115, 160), random.uniform(70, 115)};
+            return {random(150, 205), random(115, 160), random(70, 115)};
         case Material::cloth: {
-            const double dull = random.uniform(60, 170);
-            return {dull + random.uniform(-40, 60), dull + random.uniform(-40, 40),
-                    dull + random.uniform(-40, 60)};
+            const double dull = random(60, 170);
+            return {dull + random(-40, 60), dull + random(-40, 40), dull + random(-40, 60)};
         }
         case Material::any:
             break;
     }
-    return {random.uniform(20, 240), random.uniform(20, 240), random.uniform(20, 240)};
+    return {random(20, 240), random(20, 240), random(20, 240)};
 }
 
 struct Habit {
@@ -139,7 +137,7 @@ void paint(World& world, Random random) {
                     : shade_of(pick(habit(object_habits, world.objects[n].name), random), random);
         }
         Rgb rgb = of_part[key];
-        const double differs = random.uniform(0.96, 1.04);
+        const double differs = random(0.96, 1.04);
         for (double& c : rgb) c *= differs;
         part.colour = bytes(rgb);
     }

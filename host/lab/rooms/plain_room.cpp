@@ -103,7 +103,7 @@ class PlainRoom {
             const std::int32_t below = room_.placed().back().first_part;
             pose.z += items[k - 1].height();
             // The upper book's corners stay over the lower one for small turns.
-            const Pose turned{pose.x, pose.y, pose.z, pose.yaw + random_.uniform(-0.08, 0.08)};
+            const Pose turned{pose.x, pose.y, pose.z, pose.yaw + random_(-0.08, 0.08)};
             if (!room_.fits(items[k], turned, below, -1)) return;
             room_.place(items[k], turned, below, -1, where);
         }

@@ -27,17 +27,17 @@ void Composer::build(const Shell& shell) {
     world_.room = shell.size;
     world_.objects.push_back({"building", "room", false});
     const auto [w, d, h] = shell.size;
-    thickness_ = random_.uniform(0.08, 0.3);
+    thickness_ = random_(0.08, 0.3);
     add_building_box("floor", w / 2, d / 2, -0.1, {w + 2 * thickness_, d + 2 * thickness_, 0.1});
-    if (random_.chance(0.4)) skirting_ = random_.uniform(0.008, 0.02);
+    if (random_.chance(0.4)) skirting_ = random_(0.008, 0.02);
     std::array<double, 4> height{};
     int stands = 0;
     // Many who scan see half of the walls, and not up to the ceiling.
-    const double missing = random_.chance(0.4) ? random_.uniform(0.3, 0.8) : shell.missing;
+    const double missing = random_.chance(0.4) ? random_(0.3, 0.8) : shell.missing;
     const double low = random_.chance(0.15) ? 0.6 : shell.low;
     for (double& each : height) {
         if (random_.chance(missing)) continue;
-        each = random_.chance(low) ? random_.uniform(0.9, h) : h;
+        each = random_.chance(low) ? random_(0.9, h) : h;
         ++stands;
     }
     if (stands == 0) height[static_cast<std::size_t>(random_.integer(0, 3))] = h;
@@ -47,17 +47,17 @@ void Composer::build(const Shell& shell) {
         if (high == 0) continue;
         walls_.push_back(wall);
         std::vector<Opening> openings;
-        double at = random_.uniform(0.2, 0.8);
+        double at = random_(0.2, 0.8);
         const double length = wall_length(wall);
         for (int k = 0; k < 3 && high == h; ++k) {
             const bool door = random_.chance(0.5);
             int& left = door ? doors : windows;
-            const double wide = door ? random_.uniform(0.75, 1.0) : random_.uniform(0.6, 1.8);
+            const double wide = door ? random_(0.75, 1.0) : random_(0.6, 1.8);
             if (left == 0 || at + wide + 0.15 > length || h < 2.2) continue;
             --left;
-            const double top = door ? random_.uniform(1.95, 2.1) : random_.uniform(1.9, h - 0.1);
-            openings.push_back({at, at + wide, door ? 0 : random_.uniform(0.75, 1.2), top, door});
-            at += wide + random_.uniform(0.15, 1.2);
+            const double top = door ? random_(1.95, 2.1) : random_(1.9, h - 0.1);
+            openings.push_back({at, at + wide, door ? 0 : random_(0.75, 1.2), top, door});
+            at += wide + random_(0.15, 1.2);
         }
         build_wall(wall, high, openings);
     }
@@ -104,7 +104,7 @@ void Composer::fill_opening(int wall, const Opening& o) {
             return;
         }
         // Ajar into the room, its hinge at the opening's far edge.
-        const double angle = random_.uniform(0.15, 1.5);
+        const double angle = random_(0.15, 1.5);
         const Pose hinge = against_wall(wall, o.to, 0.005, 0, 0);
         const Pose way = against_wall(wall, o.from, 0.005, 0, 0);
         const double dx = (way.x - hinge.x) / wide, dy = (way.y - hinge.y) / wide;
@@ -122,7 +122,7 @@ void Composer::fill_opening(int wall, const Opening& o) {
              "door"});
         return;
     }
-    const double frame = random_.uniform(0.03, 0.07);
+    const double frame = random_(0.03, 0.07);
     wall_piece(wall, "window", o.from, o.from + frame, o.bottom, o.top, inset, 0.05);
     wall_piece(wall, "window", o.to - frame, o.to, o.bottom, o.top, inset, 0.05);
     wall_piece(wall, "window", o.from, o.to, o.bottom, o.bottom + frame, inset, 0.05);
@@ -133,7 +133,7 @@ void Composer::fill_opening(int wall, const Opening& o) {
     if (random_.chance(0.7))
         wall_piece(wall, "pane", o.from, o.to, o.bottom, o.top, inset + 0.02, 0.01);
     if (random_.chance(0.6)) {
-        const double out = random_.uniform(0.02, 0.16);
+        const double out = random_(0.02, 0.16);
         wall_piece(wall, "sill", o.from - 0.04, o.to + 0.04, o.bottom - 0.03, o.bottom, -out, out);
     }
     if (random_.chance(0.4)) hang_curtain(wall, o);
@@ -141,12 +141,12 @@ void Composer::fill_opening(int wall, const Opening& o) {
 
 // Cloth in folds: upright strips that turn to and fro, under a rod.
 void Composer::hang_curtain(int wall, const Opening& o) {
-    const double bottom = random_.chance(0.6) ? random_.uniform(0.01, 0.05) : o.bottom - 0.1;
+    const double bottom = random_.chance(0.6) ? random_(0.01, 0.05) : o.bottom - 0.1;
     const double top = std::min(o.top + 0.12, world_.room[2] - 0.03);
-    const double strip = random_.uniform(0.05, 0.11), turn = random_.uniform(0.3, 0.9);
+    const double strip = random_(0.05, 0.11), turn = random_(0.3, 0.9);
     for (const double side : {0.0, 1.0}) {
         if (random_.chance(0.2)) continue;
-        const double covered = random_.uniform(0.15, 0.5) * (o.to - o.from);
+        const double covered = random_(0.15, 0.5) * (o.to - o.from);
         const double from = side == 0 ? o.from - 0.15 : o.to + 0.15 - covered;
         Blueprint b("curtain");
         const double step = strip * std::cos(turn);
@@ -164,19 +164,19 @@ void Composer::hang_curtain(int wall, const Opening& o) {
 void Composer::add_fittings() {
     const auto [w, d, h] = world_.room;
     if (random_.chance(0.2)) {  // a pillar or a chimney breast
-        const double a = random_.uniform(0.2, 0.6), b = random_.uniform(0.15, 0.5);
-        const double off = random_.chance(0.7) ? b / 2 : random_.uniform(b / 2, d / 2);
-        add_building_box("wall", random_.uniform(a, w - a), off, 0, {a, b, h});
+        const double a = random_(0.2, 0.6), b = random_(0.15, 0.5);
+        const double off = random_.chance(0.7) ? b / 2 : random_(b / 2, d / 2);
+        add_building_box("wall", random_(a, w - a), off, 0, {a, b, h});
     }
     if (random_.chance(0.2) && w > 3.5 && d > 2.5) {  // a wall into the room, seen from both sides
-        const double x = random_.uniform(0.35, 0.65) * w, reach = random_.uniform(0.2, 0.5) * d;
-        const double high = random_.chance(0.7) ? h : random_.uniform(1.0, 1.8);
-        add_building_box("wall", x, reach / 2, 0, {random_.uniform(0.06, 0.15), reach, high});
+        const double x = random_(0.35, 0.65) * w, reach = random_(0.2, 0.5) * d;
+        const double high = random_.chance(0.7) ? h : random_(1.0, 1.8);
+        add_building_box("wall", x, reach / 2, 0, {random_(0.06, 0.15), reach, high});
     }
     for (int k = random_.integer(0, 2); k > 0; --k) {
         Blueprint b("radiator");
         const int ribs = random_.integer(6, 18);
-        const double high = random_.uniform(0.4, 0.75);
+        const double high = random_(0.4, 0.75);
         const bool panel = random_.chance(0.5);
         if (panel) b.box("panel", 0, 0.06, 0, {0.06 * ribs, 0.02, high});
         for (int r = 0; r < ribs; ++r)
@@ -184,12 +184,12 @@ void Composer::add_fittings() {
                   {panel ? 0.02 : 0.045, panel ? 0.03 : 0.1, high - 0.04});
         b.lying("pipe", 0, 0.05, 0.03, 0.06 * ribs, 0.03);
         b.box("bracket", 0, 0.01, 0.3, {0.05, 0.03, 0.05});
-        on_wall(b, random_.uniform(0.08, 0.2));
+        on_wall(b, random_(0.08, 0.2));
     }
     for (int k = random_.integer(0, 3); k > 0; --k) {
         Blueprint b(random_.chance(0.6) ? "picture" : "board");
-        const double wide = random_.uniform(0.2, 1.3), high = wide * random_.uniform(0.6, 1.3);
-        const double deep = random_.uniform(0.01, 0.04);
+        const double wide = random_(0.2, 1.3), high = wide * random_(0.6, 1.3);
+        const double deep = random_(0.01, 0.04);
         b.box("sheet", 0, 0, 0, {wide, deep, high});
         if (random_.chance(0.5)) {
             for (const double s : {-1.0, 1.0}) {
@@ -197,13 +197,12 @@ void Composer::add_fittings() {
                 b.box("rim", 0, 0.005, s < 0 ? 0 : high - 0.03, {wide, deep + 0.01, 0.03});
             }
         }
-        on_wall(b, random_.uniform(0.9, 1.5));
+        on_wall(b, random_(0.9, 1.5));
     }
     if (random_.chance(0.3)) {
         const int wall = any_wall();
-        const Pose p =
-            against_wall(wall, random_.uniform(0.1, wall_length(wall) - 0.1), 0.035, 0, 0);
-        const double r = random_.uniform(0.02, 0.06);
+        const Pose p = against_wall(wall, random_(0.1, wall_length(wall) - 0.1), 0.035, 0, 0);
+        const double r = random_(0.02, 0.06);
         Blueprint pipe("pipe");
         pipe.cylinder("pipe", 0, 0, 0, r, h);
         if (fits(pipe, {p.x, p.y, 0, 0})) add_building(moved({p.x, p.y, 0, 0}, pipe.parts.front()));

@@ -34,8 +34,7 @@ class VariedRoom {
         room_.build_room();
         const Vec3& size = room_.world().room;
         if (random_.chance(0.25)) {  // the room is an L
-            const Vec3 block{random_.uniform(0.7, 0.3 * size[0]),
-                             random_.uniform(0.7, 0.3 * size[1]), size[2]};
+            const Vec3 block{random_(0.7, 0.3 * size[0]), random_(0.7, 0.3 * size[1]), size[2]};
             const bool right = random_.chance(0.5), far = random_.chance(0.5);
             if (room_.world().parts.size() == 5) room_.add_corner("corner", block, right, far);
         }
@@ -51,8 +50,7 @@ class VariedRoom {
     void hang_lamp(std::int32_t ceiling) {
         const Vec3& size = room_.world().room;
         const Blueprint lamp = make_hanging_lamp(random_);
-        const Pose pose{random_.uniform(0.25, 0.75) * size[0],
-                        random_.uniform(0.25, 0.75) * size[1], size[2], 0};
+        const Pose pose{random_(0.25, 0.75) * size[0], random_(0.25, 0.75) * size[1], size[2], 0};
         if (room_.fits(lamp, pose, -1, ceiling)) room_.place(lamp, pose, -1, ceiling, "ceiling");
     }
 
@@ -180,8 +178,8 @@ class VariedRoom {
         constexpr std::int32_t floor = 0;
         const Vec3& size = room_.world().room;
         for (int attempt = 0; attempt < 60 && !group.empty(); ++attempt) {
-            const double x = random_.uniform(0, size[0]), y = random_.uniform(0, size[1]);
-            const Pose pose{x, y, 0, random_.uniform(-std::numbers::pi, std::numbers::pi)};
+            const double x = random_(0, size[0]), y = random_(0, size[1]);
+            const Pose pose{x, y, 0, random_(-std::numbers::pi, std::numbers::pi)};
             if (!group_fits(group, pose, floor)) continue;
             place_group(group, pose, floor, "floor");
             return;

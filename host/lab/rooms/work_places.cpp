@@ -32,7 +32,7 @@ Blueprint any_rack(Random& random) {
 
 void furnish_office(Composer& room) {
     Random& random = room.random();
-    const double clutter = random.uniform(2, 11);
+    const double clutter = random(2, 11);
     for (int k = random.integer(1, 5); k > 0; --k) {
         const Blueprint desk = make_work_table(random);
         const bool found = random.chance(0.65) ? room.along_wall(desk) : room.anywhere(desk);
@@ -43,8 +43,8 @@ void furnish_office(Composer& room) {
             const Blueprint unit = make_drawer_unit(random);
             const Composer::Placed at = room.placed()[table];
             const auto box = desk.bounds();
-            const double x = random.uniform(0.5, 0.8) * box[random.chance(0.5) ? 0 : 1][0];
-            const Vec3 p = moved(at.pose, Vec3{x, random.uniform(-0.1, 0.1), 0});
+            const double x = random(0.5, 0.8) * box[random.chance(0.5) ? 0 : 1][0];
+            const Vec3 p = moved(at.pose, Vec3{x, random(-0.1, 0.1), 0});
             if (unit.height() < 0.62) room.stand(unit, {p[0], p[1], 0, at.pose.yaw}, {0}, "floor");
         }
         room.fill(table, clutter, make_desk_item);
@@ -53,7 +53,7 @@ void furnish_office(Composer& room) {
         room.fill_if(room.along_wall(make_bookcase(random, 2.2)), 5, make_shelf_item);
     for (int k = random.integer(0, 2); k > 0; --k)
         room.fill_if(room.along_wall(make_drawer_unit(random)), clutter, make_desk_item);
-    if (random.chance(0.4)) room.along_wall(make_bush(random, random.uniform(0.8, 1.5)));
+    if (random.chance(0.4)) room.along_wall(make_bush(random, random(0.8, 1.5)));
     if (random.chance(0.3)) room.along_wall(make_coat_stand(random));
     for (int k = random.integer(0, 3); k > 0; --k) room.along_wall(make_basket(random));
     for (int k = random.integer(0, 4); k > 0; --k) {
@@ -66,7 +66,7 @@ void furnish_corridor(Composer& room) {
     Random& random = room.random();
     const double width = room.world().room[1];
     for (int k = random.integer(2, 7); k > 0; --k) {
-        constexpr auto bush = [](Random& r) { return make_bush(r, r.uniform(0.5, 1.0)); };
+        constexpr auto bush = [](Random& r) { return make_bush(r, r(0.5, 1.0)); };
         constexpr auto carton = [](Random& r) { return make_carton(r, 0.6); };
         constexpr std::array<BlueprintMake, 6> others{
             make_drawer_unit, make_rail_chair, make_bench, bush, make_basket, carton};
@@ -75,25 +75,24 @@ void furnish_corridor(Composer& room) {
         if (which < others.size()) thing = others[which](random);
         const auto box = thing.bounds();
         if (box[1][1] - box[0][1] > width - 0.55) continue;
-        if (room.along_wall(thing)) room.fill(room.last(), random.uniform(1, 6), make_shelf_item);
+        if (room.along_wall(thing)) room.fill(room.last(), random(1, 6), make_shelf_item);
     }
     for (int k = random.integer(0, 2); k > 0; --k) {
         const WallThing thing = make_wall_thing(random);
-        room.on_wall(thing.blueprint, random.uniform(thing.lowest, thing.highest));
+        room.on_wall(thing.blueprint, random(thing.lowest, thing.highest));
     }
     if (random.chance(0.4)) room.leaning(make_leaning_thing(random));
 }
 
 void furnish_shop(Composer& room) {
     Random& random = room.random();
-    const double goods = random.uniform(2, 8);
+    const double goods = random(2, 8);
     for (int k = random.integer(3, 9); k > 0; --k) {
         const bool done = random.chance(0.8) ? room.along_wall(make_bookcase(random, 2.4))
                                              : room.along_wall(make_free_cupboard(random));
         if (done) room.fill(room.last(), goods, make_shop_item);
     }
-    if (random.chance(0.7))
-        aisles(room, random.uniform(0.9, 1.4), make_gondola, goods, make_shop_item);
+    if (random.chance(0.7)) aisles(room, random(0.9, 1.4), make_gondola, goods, make_shop_item);
     for (int k = random.integer(1, 4); k > 0; --k) {
         if (!room.anywhere(make_work_table(random))) continue;
         const std::size_t table = room.last();
@@ -101,11 +100,10 @@ void furnish_shop(Composer& room) {
         if (random.chance(0.5)) work_seats(room, table, random.integer(1, 3));
     }
     if (random.chance(0.6)) {
-        const Blueprint counter = make_counter(random, random.uniform(1.2, 2.5));
+        const Blueprint counter = make_counter(random, random(1.2, 2.5));
         const Vec3& size = room.world().room;
-        if (room.fix(counter,
-                     {random.uniform(1.5, size[0] - 1.5), random.uniform(1.5, size[1] - 1.5), 0,
-                      random.integer(0, 3) * pi / 2}))
+        if (room.fix(counter, {random(1.5, size[0] - 1.5), random(1.5, size[1] - 1.5), 0,
+                               random.integer(0, 3) * pi / 2}))
             room.fill(room.last(), goods, make_desk_item);
     }
     for (int k = random.integer(0, 4); k > 0; --k) room.anywhere(make_splayed_stool(random));
@@ -116,12 +114,11 @@ void furnish_shop(Composer& room) {
 void furnish_storage(Composer& room) {
     Random& random = room.random();
     const bool hall = room.world().room[2] > 3;
-    const double goods = random.uniform(1.5, 5);
+    const double goods = random(1.5, 5);
     for (int k = random.integer(1, hall ? 6 : 3); k > 0; --k)
         room.fill_if(room.along_wall(make_rack(random, room.world().room[2] - 0.3)), goods,
                      make_store_item);
-    if (hall && random.chance(0.5))
-        aisles(room, random.uniform(1.2, 2), any_rack, goods, make_store_item);
+    if (hall && random.chance(0.5)) aisles(room, random(1.2, 2), any_rack, goods, make_store_item);
     for (int k = random.integer(0, hall ? 7 : 2); k > 0; --k) {
         if (room.anywhere(make_pallet(random)) && random.chance(0.8))
             load_pallet(room, room.last());

@@ -10,7 +10,7 @@
 #include "core/vectors.h"
 #include "lab/random.h"
 #include "lab/rooms/furnished_room.h"
-#include "lab/scan/ray_caster.h"
+#include "lab/solids/ray_caster.h"
 #include "lab/solids/rigid.h"
 #include "topple/error.h"
 
@@ -83,8 +83,8 @@ Mat4 walking_pose(const World& world, const CameraOptions& o, unsigned n, Random
     const Vec3 eye{world.room[0] / 2 + 0.95 * middle[0] * std::cos(angle),
                    world.room[1] / 2 + 0.95 * middle[1] * std::sin(angle),
                    1.35 + 0.35 * std::sin(2.5 * angle)};
-    const double heading = angle + (n % 2 ? pi : 0) + random.uniform(-0.5, 0.5);
-    const double pitch = random.uniform(-0.75, -0.12);
+    const double heading = angle + (n % 2 ? pi : 0) + random(-0.5, 0.5);
+    const double pitch = random(-0.75, -0.12);
     return look_at(eye, {eye[0] + std::cos(heading), eye[1] + std::sin(heading), eye[2] + pitch});
 }
 

@@ -111,7 +111,7 @@ void tear_holes(std::vector<ColouredPoint>& points, unsigned count, double least
         const auto middle =
             static_cast<std::size_t>(random.uniform() * static_cast<double>(points.size()));
         const Vec3 at = points[middle].at;
-        const double radius = random.uniform(least_radius, most_radius);
+        const double radius = random(least_radius, most_radius);
         std::erase_if(points, [&](const ColouredPoint& p) {
             return std::hypot(p.at[0] - at[0], p.at[1] - at[1], p.at[2] - at[2]) < radius;
         });

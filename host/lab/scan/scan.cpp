@@ -22,25 +22,25 @@ using std::numbers::pi;
 
 // A few degrees of tilt, any heading and origin.
 Mat4 any_frame(const World& world, Random& random) {
-    const double heading = random.uniform(0, 2 * pi), lean = random.uniform(0, 4) * pi / 180;
-    const double yaw = random.chance(0.25) ? 0 : random.uniform(-pi, pi);
+    const double heading = random(0, 2 * pi), lean = random(0, 4) * pi / 180;
+    const double yaw = random.chance(0.25) ? 0 : random(-pi, pi);
     const auto tilt = rotation({std::cos(heading), std::sin(heading), 0}, lean);
     Mat4 m = product(rigid(tilt, {}), rigid(rotation({0, 0, 1}, yaw), {}));
     const Vec3 middle =
         moved(m, {random.uniform() * world.room[0], random.uniform() * world.room[1], 0});
     m[3] = -middle[0];
     m[7] = -middle[1];
-    m[11] = random.uniform(-1.5, 0.5) - middle[2];
+    m[11] = random(-1.5, 0.5) - middle[2];
     return m;
 }
 
 Light any_light(Random& random) {
-    const double heading = random.uniform(0, 2 * pi), height = random.uniform(0.6, 0.95);
+    const double heading = random(0, 2 * pi), height = random(0.6, 0.95);
     const double flat = std::sqrt(1 - height * height);
     return {{flat * std::cos(heading), flat * std::sin(heading), height},
-            random.uniform(0.4, 0.7),
-            random.uniform(3, 9),
-            random.uniform(0.8, 1.1)};
+            random(0.4, 0.7),
+            random(3, 9),
+            random(0.8, 1.1)};
 }
 
 // Of a reading of z metres, in the camera's frame.
@@ -105,7 +105,7 @@ class Scanner {
                 Shot& shot = shots[at];
                 const std::size_t n = first + at;
                 Light light = light_;
-                light.exposure *= Random(options_.seed, 9000 + n).uniform(0.93, 1.07);
+                light.exposure *= Random(options_.seed, 9000 + n)(0.93, 1.07);
                 shot.view = look(caster_, k, poses[n], light, Random(options_.seed, 10000 + 2 * n));
                 shot.depth =
                     rough_depth(shot.view, k, sensor, Random(options_.seed, 10001 + 2 * n));
@@ -144,8 +144,7 @@ class Scanner {
     std::vector<Mat4> drifted(const std::vector<Mat4>& poses) {
         const std::size_t n = poses.size();
         const double worse = random_.chance(0.3) ? 3 : 1;
-        const double off = worse * random_.uniform(0.001, 0.005),
-                     turn = worse * random_.uniform(0.0005, 0.0025);
+        const double off = worse * random_(0.001, 0.005), turn = worse * random_(0.0005, 0.0025);
         std::vector<std::vector<double>> noise;
         for (int a = 0; a < 6; ++a)
             noise.push_back(smooth_noise(n, 4, a < 3 ? off : turn, random_));
@@ -178,7 +177,7 @@ class Scanner {
     }
 
     void walk() {
-        const double focal = random_.uniform(262, 300);
+        const double focal = random_(262, 300);
         scan_.intrinsics = {320, 240, focal, focal, 159.5, 119.5, 1000};
         scan_.truth_m = 0.015;
         const Sensor sensor = any_sensor(scan_.intrinsics, random_);
@@ -192,7 +191,7 @@ class Scanner {
 
     void single() {
         const bool large = random_.chance(0.5);
-        const double focal = random_.uniform(0.82, 0.95);
+        const double focal = random_(0.82, 0.95);
         scan_.intrinsics = large
                                ? Intrinsics{640, 480, 640 * focal, 640 * focal, 319.5, 239.5, 1000}
                                : Intrinsics{320, 240, 320 * focal, 320 * focal, 159.5, 119.5, 1000};
@@ -206,8 +205,8 @@ class Scanner {
     void fuse() {
         const bool sparse = options_.kind == ScanKind::sparse;
         const double spacing = options_.spacing_m > 0 ? options_.spacing_m
-                               : sparse               ? random_.uniform(0.02, 0.06)
-                                                      : random_.uniform(0.008, 0.02);
+                               : sparse               ? random_(0.02, 0.06)
+                                                      : random_(0.008, 0.02);
         const Intrinsics k = sparse ? Intrinsics{192, 144, 164, 164, 95.5, 71.5, 1000}
                                     : Intrinsics{320, 240, 277, 277, 159.5, 119.5, 1000};
         scan_.truth_m = 0.015;
@@ -236,13 +235,13 @@ class Scanner {
             scan_.cloud = fused(all, spacing, 2);
         }
         if (sparse || random_.chance(0.5)) {
-            const double radius = sparse ? random_.uniform(0.012, 0.035) : 1.2 * spacing;
-            smooth_among(scan_.cloud, base, radius, random_.uniform(0.3, 0.8));
+            const double radius = sparse ? random_(0.012, 0.035) : 1.2 * spacing;
+            smooth_among(scan_.cloud, base, radius, random_(0.3, 0.8));
         }
         const double area = world_.room[0] * world_.room[1];
-        tear_holes(scan_.cloud, static_cast<unsigned>(random_.uniform(0.3, 2.5) * area), 0.04, 0.18,
+        tear_holes(scan_.cloud, static_cast<unsigned>(random_(0.3, 2.5) * area), 0.04, 0.18,
                    random_);
-        const double jitter = sparse ? random_.uniform(0, 0.003) : 0;
+        const double jitter = sparse ? random_(0, 0.003) : 0;
         for (ColouredPoint& p : scan_.cloud) {
             for (double& a : p.at) a += jitter * random_.normal();
         }
@@ -250,12 +249,12 @@ class Scanner {
 
     void laser() {
         const auto count = static_cast<unsigned>(random_.integer(1, 4));
-        const double height = random_.uniform(1.3, 1.7);
-        const double step = (options_.spacing_m > 0 ? options_.spacing_m / 3
-                                                    : random_.uniform(0.3, 0.7) * pi / 180);
+        const double height = random_(1.3, 1.7);
+        const double step =
+            (options_.spacing_m > 0 ? options_.spacing_m / 3 : random_(0.3, 0.7) * pi / 180);
         scan_.truth_m = 0.012;
         for (const Vec3& eye : scanner_stations(world_, caster_, count, height, random_))
-            sweep(eye, step, random_.uniform(0.001, 0.005));
+            sweep(eye, step, random_(0.001, 0.005));
         thin();
     }
 
@@ -263,7 +262,7 @@ class Scanner {
     void crop() {
         Random random(options_.seed, 78 + static_cast<std::uint64_t>(options_.kind));
         if (!random.chance(0.35)) return;
-        const double height = random.uniform(1.5, 2.4);
+        const double height = random(1.5, 2.4);
         const Mat4 to_room = inverse(scan_.world_to_scan);
         std::erase_if(scan_.cloud,
                       [&](const ColouredPoint& p) { return moved(to_room, p.at)[2] > height; });
@@ -272,8 +271,8 @@ class Scanner {
 
     // One station: column by column from below upwards.
     void sweep(const Vec3& eye, double step, double noise) {
-        const double drop = random_.uniform(0.002, 0.03), mixed = random_.uniform(0.1, 0.4);
-        const double first = random_.uniform(0, 2 * pi);
+        const double drop = random_(0.002, 0.03), mixed = random_(0.1, 0.4);
+        const double first = random_(0, 2 * pi);
         std::vector<LabelledPoint> points;
         for (double azimuth = 0; azimuth < 2 * pi; azimuth += step) {
             double before = 0;

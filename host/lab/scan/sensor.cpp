@@ -43,12 +43,12 @@ ExactView look(const RayCaster& caster, const Intrinsics& k, const Mat4& camera_
         const double x = (static_cast<double>(at % k.width) - k.cx) / k.fx;
         const double y = (static_cast<double>(at / k.width) - k.cy) / k.fy;
         const double length = std::hypot(x, y, 1.0);
-        Vec3 d{}, p{};
+        Vec3 d{};
         for (std::size_t a = 0; a < 3; ++a)
             d[a] = (m[4 * a] * x + m[4 * a + 1] * y + m[4 * a + 2]) / length;
         const auto hit = caster.cast(eye, d);
         if (hit.part < 0) continue;
-        for (std::size_t a = 0; a < 3; ++a) p[a] = eye[a] + hit.distance * d[a];
+        const Vec3 p = along(eye, hit.distance, d);
         const Part& part = caster.parts()[static_cast<std::size_t>(hit.part)];
         const Vec3 normal = part.normal(p);
         view.depth[at] = static_cast<float>(hit.distance / length);
@@ -61,19 +61,19 @@ ExactView look(const RayCaster& caster, const Intrinsics& k, const Mat4& camera_
 
 Sensor any_sensor(const Intrinsics& k, Random& random) {
     Sensor s;
-    const double quality = random.uniform(0.5, 1.5);
-    s.most_m = random.uniform(3.8, 6.0);
+    const double quality = random(0.5, 1.5);
+    s.most_m = random(3.8, 6.0);
     s.axial_m *= quality;
     s.growth *= quality;
-    s.step = random.chance(0.75) ? random.uniform(0.0007, 0.002) : 0;
-    s.ragged_px = random.uniform(0.4, 2.0);
-    s.lost_edges = random.uniform(0.4, 0.9);
-    s.flying = random.chance(0.4) ? random.uniform(0.1, 0.5) : 0;
-    s.grazing = random.uniform(0.15, 0.32);
-    s.blobs = random.uniform(1.8, 2.8);
-    s.specks = random.uniform(0.002, 0.02);
+    s.step = random.chance(0.75) ? random(0.0007, 0.002) : 0;
+    s.ragged_px = random(0.4, 2.0);
+    s.lost_edges = random(0.4, 0.9);
+    s.flying = random.chance(0.4) ? random(0.1, 0.5) : 0;
+    s.grazing = random(0.15, 0.32);
+    s.blobs = random(1.8, 2.8);
+    s.specks = random(0.002, 0.02);
     if (random.chance(0.6)) {
-        const double size = random.uniform(0.0005, 0.003);
+        const double size = random(0.0005, 0.003);
         s.bend = smooth_noise_image(k.width, k.height, 0.12 * k.width, size, random);
     }
     return s;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lab/random.h"
-#include "lab/scan/ray_caster.h"
+#include "lab/solids/ray_caster.h"
 
 // What a depth and colour camera sees, first as it is and then as a cheap sensor gives it.
 namespace topple::scenes {

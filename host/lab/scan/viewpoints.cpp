@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/vectors.h"
 #include "lab/scan/depth_camera.h"
 #include "lab/scan/smooth.h"
 #include "topple/error.h"
@@ -200,7 +201,7 @@ std::vector<Vec3> scanner_stations(const World& world, const RayCaster& caster, 
 
 std::vector<Mat4> hand_held_walk(const World& world, const RayCaster& caster, unsigned frames,
                                  Random& random) {
-    const double height = random.uniform(1.3, 1.6);
+    const double height = random(1.3, 1.6);
     const FreePlaces free(world, caster, height);
     auto passed = stops(free, std::clamp(frames / 6, 3u, 24u), random);
     order(free, passed);
@@ -215,7 +216,7 @@ std::vector<Mat4> hand_held_walk(const World& world, const RayCaster& caster, un
         double least = 1e9;
         for (std::size_t k = 0; k < things.size(); ++k) {
             const double d = distance(things[k], here);
-            const double cost = std::abs(d - 1.7) + 1.5 * seen[k] + random.uniform(0, 2);
+            const double cost = std::abs(d - 1.7) + 1.5 * seen[k] + random(0, 2);
             if (cost < least) {
                 least = cost;
                 best = k;
@@ -232,10 +233,7 @@ std::vector<Mat4> hand_held_walk(const World& world, const RayCaster& caster, un
             const double share =
                 n == 0 ? 1 : static_cast<double>(k) / static_cast<double>(path.size() - 1);
             const Vec3 before = n == 0 ? at : gaze[gaze.size() - (k > 0 ? k : 1)];
-            Vec3 toward{};
-            for (std::size_t a = 0; a < 3; ++a)
-                toward[a] = before[a] + std::min(1.0, 1.4 * share) * (at[a] - before[a]);
-            gaze.push_back(toward);
+            gaze.push_back(along(before, std::min(1.0, 1.4 * share), minus(at, before)));
         }
     }
     const auto sway = [&](double size) { return smooth_noise(frames, 2.5, size, random); };
@@ -248,11 +246,8 @@ std::vector<Mat4> hand_held_walk(const World& world, const RayCaster& caster, un
         const auto k = static_cast<std::size_t>(s);
         const std::size_t next = std::min(k + 1, way.size() - 1);
         const double f = s - static_cast<double>(k);
-        Vec3 eye{}, at{};
-        for (std::size_t a = 0; a < 3; ++a) {
-            eye[a] = way[k][a] + f * (way[next][a] - way[k][a]);
-            at[a] = gaze[k][a] + f * (gaze[next][a] - gaze[k][a]);
-        }
+        Vec3 eye = along(way[k], f, minus(way[next], way[k]));
+        const Vec3 at = along(gaze[k], f, minus(gaze[next], gaze[k]));
         eye = {eye[0] + sx[n], eye[1] + sy[n], eye[2] + sz[n]};
         const double flat = std::max(0.3, std::hypot(at[0] - eye[0], at[1] - eye[1]));
         const double heading = std::atan2(at[1] - eye[1], at[0] - eye[0]) + yaw[n];
@@ -269,7 +264,7 @@ Mat4 best_view(const World& world, const RayCaster& caster, Random& random) {
     Mat4 best{};
     double most = -1;
     for (int attempt = 0; attempt < 24; ++attempt) {
-        const FreePlaces free(world, caster, random.uniform(1.0, 1.7));
+        const FreePlaces free(world, caster, random(1.0, 1.7));
         for (int k = 0; k < 6; ++k) {
             const Vec3 eye = free.place(free.any(random));
             const auto n = random.integer(0, static_cast<int>(things.size()) - 1);
@@ -277,7 +272,7 @@ Mat4 best_view(const World& world, const RayCaster& caster, Random& random) {
             const double d = distance(at, eye);
             if (d < 0.6 || d > 3.0 || at[2] > eye[2] + 0.3) continue;
             if (std::hypot(at[0] - eye[0], at[1] - eye[1]) < 0.2) continue;
-            const Mat4 pose = rolled(look_at(eye, at), random.uniform(-0.05, 0.05));
+            const Mat4 pose = rolled(look_at(eye, at), random(-0.05, 0.05));
             const double score = things_in_view(world, caster, pose);
             if (score > most) {
                 most = score;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lab/random.h"
-#include "lab/scan/ray_caster.h"
+#include "lab/solids/ray_caster.h"
 #include "lab/solids/scene.h"
 
 // Where a person holds a camera, or puts a scanner up, in a room full of things. Room frame.

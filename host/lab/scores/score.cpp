@@ -7,7 +7,7 @@
 #include <string>
 
 #include "lab/parallel.h"
-#include "lab/solids/measure.h"
+#include "lab/solids/ray_caster.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -31,20 +31,18 @@ void check(const Scene& parse) {
 }  // namespace
 
 std::vector<std::int32_t> true_parts(const World& truth, const ScenePoints& points) {
-    const auto all = measures(truth);
+    const RayCaster parts(truth.parts);
     std::vector<std::int32_t> label(points.x.size(), -1);
     in_parallel(label.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n < last; ++n) {
             const Vec3 p = truth.to_room({points.x[n], points.y[n], points.z[n]});
             double best = nearest_m;
-            for (std::size_t k = 0; k < all.size(); ++k) {
-                if (!all[k].near(p, best)) continue;
-                const double d = std::abs(all[k].at(p));
-                if (d < best) {
-                    best = d;
-                    label[n] = static_cast<std::int32_t>(k);
-                }
-            }
+            parts.each_near(p, nearest_m, [&](std::int32_t part, double distance) {
+                const double d = std::abs(distance);
+                if (d > best || d >= nearest_m || (d == best && part > label[n])) return;
+                best = d;
+                label[n] = part;
+            });
         }
     });
     return label;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lab/parallel.h"
-#include "lab/solids/measure.h"
+#include "lab/solids/ray_caster.h"
 
 namespace topple::scenes {
 namespace {
@@ -69,7 +69,7 @@ struct Count {
 
 Count found(const Part& part, const Occupied& occupied, double h, const Domain& domain) {
     const auto box = part.bounds();
-    const Measure measure(part);
+    const Part::Heading heading = part.heading();
     std::array<std::int64_t, 3> low{}, high{};
     for (std::size_t a = 0; a < 3; ++a) {
         low[a] = std::llround(std::floor(box[0][a] / h)) - 1;
@@ -81,7 +81,7 @@ Count found(const Part& part, const Occupied& occupied, double h, const Domain& 
         for (std::int64_t j = low[1]; j < high[1]; ++j) {
             for (std::int64_t k = low[2]; k < high[2]; ++k) {
                 const Vec3 p{mid(i), mid(j), mid(k)};
-                if (!(measure.at(p) < -0.25 * h) || (domain && !domain(p))) continue;
+                if (!(part.distance(p, heading) < -0.25 * h) || (domain && !domain(p))) continue;
                 count.of++;
                 count.hits += occupied.near(i, j, k);
             }
@@ -110,7 +110,7 @@ Share recall(const World& truth, const SolidVoxels& solid, double h, const Domai
 
 std::vector<Verdict> verdicts(const World& truth, const SolidVoxels& solid, double h,
                               const Domain& domain) {
-    const auto all = measures(truth);
+    const RayCaster parts(truth.parts);
     std::vector<Verdict> verdict(solid.x.size(), Verdict::not_judged);
     in_parallel(verdict.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n < last; ++n) {
@@ -118,15 +118,12 @@ std::vector<Verdict> verdicts(const World& truth, const SolidVoxels& solid, doub
             if (domain && !domain(p)) continue;
             bool in_room = false;
             double near = infinity;
-            for (const Measure& m : all) {
-                if (!m.near(p, 2 * h)) continue;
-                const double d = m.at(p);
-                if (m.part().object == 0) {
-                    in_room = in_room || d < 1.5 * h;
-                } else {
+            parts.each_near(p, 2 * h, [&](std::int32_t part, double d) {
+                if (truth.parts[static_cast<std::size_t>(part)].object != 0)
                     near = std::min(near, d);
-                }
-            }
+                else
+                    in_room = in_room || d < 1.5 * h;
+            });
             if (!in_room || near < 0)
                 verdict[n] = near <= 0.87 * h ? Verdict::right : Verdict::wrong;
         }

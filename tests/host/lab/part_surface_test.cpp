@@ -79,8 +79,7 @@ TEST(PartSurface, PointsLieOnTheSolidWithItsNormal) {
             add_patches(sheets[k], static_cast<std::uint32_t>(k), 0.025, patches);
         for (const Patch& patch : patches) {
             const Sheet& sheet = sheets[patch.sheet];
-            const auto [p, n] =
-                patch.spread(sheet, random.uniform(0.01, 0.99), random.uniform(0.01, 0.99));
+            const auto [p, n] = patch.spread(sheet, random(0.01, 0.99), random(0.01, 0.99));
             ASSERT_NEAR(solid.part.distance(p), 0, 1e-9) << solid.name;
             const Vec3 out{p[0] + 1e-4 * n[0], p[1] + 1e-4 * n[1], p[2] + 1e-4 * n[2]};
             ASSERT_NEAR(solid.part.distance(out), 1e-4, 1e-7) << solid.name;

@@ -40,7 +40,7 @@ std::vector<Part> all_shapes() {
 
 Vec3 in_box(Random& random, const std::array<Vec3, 2>& box, double grow) {
     Vec3 p{};
-    for (std::size_t k = 0; k < 3; ++k) p[k] = random.uniform(box[0][k] - grow, box[1][k] + grow);
+    for (std::size_t k = 0; k < 3; ++k) p[k] = random(box[0][k] - grow, box[1][k] + grow);
     return p;
 }
 

@@ -69,7 +69,7 @@ topple::Scene perfect(const World& world) {
         const auto box = p.bounds();
         for (int n = 0; n < 3000; ++n) {
             Vec3 q{};
-            for (std::size_t k = 0; k < 3; ++k) q[k] = random.uniform(box[0][k], box[1][k]);
+            for (std::size_t k = 0; k < 3; ++k) q[k] = random(box[0][k], box[1][k]);
             const double d = p.distance(q);
             const Vec3 g = p.normal(q);
             for (std::size_t k = 0; k < 3; ++k) q[k] -= d * g[k];

@@ -222,7 +222,7 @@ TEST(HullLandscape, CoplanarCollinearAndInnerPointsChangeNothing) {
     std::vector<Vec3> more = box.points;
     scenes::Random random(4);
     for (int n = 0; n < 400; ++n) {
-        Vec3 p{random.uniform(-0.15, 0.15), random.uniform(-0.1, 0.1), random.uniform(-0.25, 0.25)};
+        Vec3 p{random(-0.15, 0.15), random(-0.1, 0.1), random(-0.25, 0.25)};
         if (n % 4 > 0) p[0] = p[0] < 0 ? -0.15 : 0.15;
         if (n % 4 > 1) p[1] = p[1] < 0 ? -0.1 : 0.1;
         if (n % 4 > 2) p[2] = p[2] < 0 ? -0.25 : 0.25;
@@ -238,7 +238,7 @@ TEST(HullLandscape, CoplanarCollinearAndInnerPointsChangeNothing) {
     }
     // Faces flat to a micrometre, as models with six decimals have them, are one face.
     for (Vec3& p : more) {
-        for (double& x : p) x += random.uniform(-5e-7, 5e-7);
+        for (double& x : p) x += random(-5e-7, 5e-7);
     }
     const HullLandscape rough = hull_landscape(more, {0, 0, 0}, {.resolution_m = 2e-6});
     ASSERT_EQ(rough.poses.size(), 6U);
@@ -374,7 +374,7 @@ TEST(HullLandscape, RefusesWhatIsNoSolid) {
     std::vector<Vec3> line, plane;
     scenes::Random random(8);
     for (int n = 0; n < 20; ++n) {
-        const double t = random.uniform(-1, 1), u = random.uniform(-1, 1);
+        const double t = random(-1, 1), u = random(-1, 1);
         line.push_back({t, 2 * t + 1, -t / 3});
         plane.push_back({t, u, 0.3 * t - 0.7 * u + 0.2});
     }

@@ -86,7 +86,7 @@ inline std::vector<Vec3> ball_points(double r, unsigned frequency) {
 }
 
 inline Vec3 random_direction(scenes::Random& random) {
-    const double z = random.uniform(-1, 1), angle = random.uniform(0, 2 * std::numbers::pi),
+    const double z = random(-1, 1), angle = random(0, 2 * std::numbers::pi),
                  r = std::sqrt(1 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
@@ -102,12 +102,11 @@ inline std::vector<Vec3> turned(std::vector<Vec3> points, scenes::Random& random
 // Points in a ball of radius 0.1 m, stretched by axes of their own: round for `stretch` 1.
 inline Hull random_hull(std::uint64_t seed, unsigned count, double stretch = 1) {
     scenes::Random random(seed);
-    const std::array<double, 3> size{0.1 * stretch, 0.1 * random.uniform(1 / stretch, stretch),
-                                     0.1};
+    const std::array<double, 3> size{0.1 * stretch, 0.1 * random(1 / stretch, stretch), 0.1};
     std::vector<Vec3> points;
     while (points.size() < count) {
         Vec3 p{};
-        for (double& x : p) x = random.uniform(-1, 1);
+        for (double& x : p) x = random(-1, 1);
         if (dot(p, p) > 1) continue;
         for (std::size_t a = 0; a < 3; ++a) p[a] *= size[a];
         points.push_back(p);
@@ -119,7 +118,7 @@ inline Hull random_hull(std::uint64_t seed, unsigned count, double stretch = 1) 
 inline Hull cut_box_hull(std::uint64_t seed) {
     scenes::Random random(seed);
     std::array<double, 3> half{};
-    for (double& h : half) h = random.uniform(0.025, 0.2);
+    for (double& h : half) h = random(0.025, 0.2);
     std::vector<Vec3> points;
     for (unsigned corner = 0; corner < 8; ++corner) {
         Vec3 p{};
@@ -130,7 +129,7 @@ inline Hull cut_box_hull(std::uint64_t seed) {
         }
         for (std::size_t a = 0; a < 3; ++a) {
             Vec3 cut = p;
-            cut[a] *= 1 - 2 * random.uniform(0.05, 0.45);
+            cut[a] *= 1 - 2 * random(0.05, 0.45);
             points.push_back(cut);
         }
     }

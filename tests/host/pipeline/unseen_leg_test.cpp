@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "host/pipeline/scan.h"
-#include "lab/scan/ray_caster.h"
+#include "lab/solids/ray_caster.h"
 
 // Laser stations that don't see all of what carries things.
 namespace topple::test {

@@ -10,7 +10,8 @@
 
 namespace topple::scenes {
 
-// The first surface along a ray through many parts, by a tree of their bounding boxes. Room frame.
+// Which of many parts lie along a ray or near a place, by a tree of their bounding boxes. Room
+// frame.
 class RayCaster {
   public:
     explicit RayCaster(const std::vector<Part>& parts);  // which must outlive this
@@ -21,6 +22,10 @@ class RayCaster {
     };
     Hit cast(const Vec3& origin, const Vec3& direction) const;
 
+    // use(part, its signed distance) for each part that may be nearer to p than `reach`, and maybe
+    // for others.
+    template <class Use>
+    void each_near(const Vec3& p, double reach, const Use& use) const;
     // Least distance to any part, as far as `most`; negative inside of one.
     double clearance(const Vec3& p, double most) const;
 
@@ -42,5 +47,28 @@ class RayCaster {
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };
+
+template <class Use>
+void RayCaster::each_near(const Vec3& p, double reach, const Use& use) const {
+    std::array<std::uint32_t, 64> stack{};
+    std::size_t depth = nodes_.empty() ? 0 : 1;  // from the root
+    while (depth > 0) {
+        const std::uint32_t at = stack[--depth];
+        const Node& node = nodes_[at];
+        bool near = true;
+        for (std::size_t a = 0; a < 3; ++a)
+            near = near && p[a] > node.box[0][a] - reach && p[a] < node.box[1][a] + reach;
+        if (!near) continue;
+        if (node.count == 0) {
+            stack[depth++] = at + 1;
+            stack[depth++] = node.first;
+            continue;
+        }
+        for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+            const std::uint32_t id = order_[k];
+            use(static_cast<std::int32_t>(id), (*parts_)[id].distance(p, headings_[id]));
+        }
+    }
+}
 
 }  // namespace topple::scenes

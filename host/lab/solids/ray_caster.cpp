@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lab/scan/ray_caster.h"
+#include "lab/solids/ray_caster.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,26 +106,7 @@ RayCaster::Hit RayCaster::cast(const Vec3& origin, const Vec3& direction) const 
 
 double RayCaster::clearance(const Vec3& p, double most) const {
     double best = most;
-    std::vector<std::uint32_t> stack;
-    if (!nodes_.empty()) stack.push_back(0);
-    while (!stack.empty()) {
-        const std::uint32_t at = stack.back();
-        stack.pop_back();
-        const Node& node = nodes_[at];
-        bool near = true;
-        for (std::size_t a = 0; a < 3; ++a)
-            near = near && p[a] > node.box[0][a] - most && p[a] < node.box[1][a] + most;
-        if (!near) continue;
-        if (node.count == 0) {
-            stack.push_back(at + 1);
-            stack.push_back(node.first);
-            continue;
-        }
-        for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-            const std::uint32_t id = order_[k];
-            best = std::min(best, (*parts_)[id].distance(p, headings_[id]));
-        }
-    }
+    each_near(p, most, [&](std::int32_t, double distance) { best = std::min(best, distance); });
     return best;
 }
 
