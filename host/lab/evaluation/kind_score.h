@@ -9,7 +9,7 @@
 #include "lab/scan/scan.h"
 #include "topple/parse.h"
 
-// Parses of scans of the families of rooms (scenes/kinds/kinds.h), judged by what moves as one.
+// Parses of scans of the families of rooms (lab/rooms/kinds.h), judged by what moves as one.
 namespace topple::evaluation {
 
 // A point's true object is that of the nearest point of truth within 6 cm. All that is fixed to the

@@ -33,7 +33,7 @@ class Folder {
   public:
     Folder()
         : path_(fs::temp_directory_path() /
-                ("topple_scenes_" + std::to_string(::getpid()) + "_" +
+                ("topple_lab_" + std::to_string(::getpid()) + "_" +
                  ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
         fs::remove_all(path_);
     }
