@@ -37,8 +37,7 @@ Camera camera_on(const Vec3& low, const Vec3& high, int width, int height,
     const double level = std::hypot(ahead[0], ahead[1]), length = std::hypot(level, ahead[2]);
     camera.ahead = {ahead[0] / length, ahead[1] / length, ahead[2] / length};
     camera.right = {ahead[1] / level, -ahead[0] / level, 0};
-    camera.up = {camera.right[1] * camera.ahead[2], -camera.right[0] * camera.ahead[2],
-                 camera.right[0] * camera.ahead[1] - camera.right[1] * camera.ahead[0]};
+    camera.up = cross(camera.right, camera.ahead);
     camera.focal = height / (2 * std::tan(45 * std::numbers::pi / 360));
     const double wide = width - margin[0] - margin[1], tall = height - margin[2] - margin[3];
     camera.x0 = margin[0] + wide / 2;

@@ -36,10 +36,8 @@ std::vector<CellColours::Known> CellColours::spread(
     for (std::vector<std::uint32_t> next; !ring.empty(); std::swap(ring, next)) {
         next.clear();
         for (const std::uint32_t i : ring) {
-            for (std::size_t face = 0; face < 6; ++face) {
-                auto beside = index[i];
-                beside[face / 2] += face % 2 == 0 ? -1 : 1;
-                const std::uint32_t other = table.find(beside);
+            for (const auto& near : beside(index[i])) {
+                const std::uint32_t other = table.find(near);
                 if (other == CellTable::absent || body[other] != body[i] || out[other].known)
                     continue;
                 if (around[other].count == 0) next.push_back(other);

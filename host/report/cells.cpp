@@ -8,9 +8,6 @@ namespace {
 
 constexpr std::uint64_t no_key = UINT64_MAX;
 
-constexpr std::array<std::array<std::int32_t, 3>, 6> faces{
-    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
-
 // Of the block that a cell lies in.
 std::uint64_t block_of(const std::array<std::int32_t, 3>& index) {
     std::uint64_t key = 0;
@@ -24,10 +21,6 @@ std::size_t place_of(const std::array<std::int32_t, 3>& index) {
     for (const auto value : index)
         place = place << 3 | (static_cast<std::uint32_t>(value + (1 << 20)) & 7);
     return place;
-}
-
-std::array<std::int32_t, 3> beside(const std::array<std::int32_t, 3>& index, std::size_t face) {
-    return {index[0] + faces[face][0], index[1] + faces[face][1], index[2] + faces[face][2]};
 }
 
 bool unit(std::array<float, 3>& v) {
@@ -83,14 +76,21 @@ void CellTable::grow() {
     }
 }
 
+std::array<std::array<std::int32_t, 3>, 6> beside(const std::array<std::int32_t, 3>& index) {
+    const auto [i, j, k] = index;
+    return {
+        {{i - 1, j, k}, {i + 1, j, k}, {i, j - 1, k}, {i, j + 1, k}, {i, j, k - 1}, {i, j, k + 1}}};
+}
+
 std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table) {
     std::size_t count = 0;
     for (auto& cell : cells) {
-        cell.exposed = 0;
-        for (std::size_t face = 0; face < faces.size(); ++face) {
-            const bool open = table.find(beside(cell.index, face)) == CellTable::absent;
-            cell.exposed = static_cast<std::uint8_t>(cell.exposed | (open ? 1u << face : 0u));
+        unsigned faces = 0, bit = 1;
+        for (const auto& other : beside(cell.index)) {
+            if (table.find(other) == CellTable::absent) faces |= bit;
+            bit <<= 1;
         }
+        cell.exposed = static_cast<std::uint8_t>(faces);
         count += cell.exposed != 0;
     }
     return count;
@@ -107,8 +107,8 @@ std::vector<std::uint32_t> spread_normals(std::vector<Cell>& cells, const CellTa
         // All of a ring read the ring before: the result does not depend on the order of the cells.
         std::vector<std::array<float, 3>> found(missing.size());
         for (std::size_t k = 0; k < missing.size(); ++k) {
-            for (std::size_t face = 0; face < faces.size(); ++face) {
-                const auto other = table.find(beside(cells[missing[k]].index, face));
+            for (const auto& index : beside(cells[missing[k]].index)) {
+                const auto other = table.find(index);
                 if (other == CellTable::absent || !cells[other].background) continue;
                 for (std::size_t axis = 0; axis < 3; ++axis)
                     found[k][axis] += cells[other].normal[axis];

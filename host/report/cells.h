@@ -42,6 +42,9 @@ class CellTable {
     int shift_;                          // of a hash, to as many bits as the tables have slots
 };
 
+// The six cells that share a face with one, in the order of Cell::exposed.
+std::array<std::array<std::int32_t, 3>, 6> beside(const std::array<std::int32_t, 3>& index);
+
 // Marks which faces of each cell are exposed; returns how many cells have one.
 std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table);
 

@@ -9,7 +9,7 @@ namespace topple::report {
 DepthImage::DepthImage(int width, int height)
     : width_(width),
       height_(height),
-      nearness_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0),
+      nearness_(index(0, height), 0),
       what_(nearness_.size(), nothing) {}
 
 void DepthImage::triangle(const Camera& camera, const Vec3& a, const Vec3& b, const Vec3& c,
@@ -49,8 +49,7 @@ void DepthImage::triangle(const Camera& camera, const Vec3& a, const Vec3& b, co
         const int right = static_cast<int>(std::floor(std::clamp(to - 0.5, -1.0, width_ - 1.0)));
         for (int column = left; column <= right; ++column) {
             const auto nearness = static_cast<float>(nx * (column + 0.5) + ny * y + n0);
-            const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
-                            static_cast<std::size_t>(column);
+            const std::size_t at = index(column, row);
             if (nearness <= nearness_[at]) continue;
             nearness_[at] = nearness;
             what_[at] = what;

@@ -24,6 +24,7 @@ class DepthImage {
 
     int width() const { return width_; }
     int height() const { return height_; }
+    std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * width_ + x); }
     std::uint32_t what(std::size_t at) const { return what_[at]; }
     double depth(std::size_t at) const { return 1 / double{nearness_[at]}; }  // infinite: nothing
 

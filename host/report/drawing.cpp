@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/number_text.h"
+#include "core/vectors.h"
 #include "report/drawing_parts.h"
 
 namespace topple::report {
@@ -19,8 +20,7 @@ std::string joules(double value) {
 
 double lowest_of(const std::vector<Vec3>& corners, const Vec3& d) {
     double lowest = std::numeric_limits<double>::infinity();
-    for (const Vec3& v : corners)
-        lowest = std::min(lowest, v[0] * d[0] + v[1] * d[1] + v[2] * d[2]);
+    for (const Vec3& v : corners) lowest = std::min(lowest, dot(v, d));
     return lowest;
 }
 

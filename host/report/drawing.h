@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "topple/scene.h"
@@ -59,12 +60,16 @@ struct Drawing {
     };
     std::string title;
     double width = 0, height = 0;
-    std::vector<Swatch> swatches;
-    std::vector<Stroke> strokes;
-    std::vector<Dot> dots;
-    std::vector<Label> labels;
-    std::optional<Sphere> sphere;
-    std::optional<Raster> raster;
+    std::vector<Swatch> swatches{};
+    std::vector<Stroke> strokes{};
+    std::vector<Dot> dots{};
+    std::vector<Label> labels{};
+    std::optional<Sphere> sphere{};
+    std::optional<Raster> raster{};
+
+    void say(const Point& at, Anchor anchor, std::string text, bool strong = false) {
+        labels.push_back({at, anchor, strong, std::move(text)});
+    }
 };
 
 // Low to high energy.

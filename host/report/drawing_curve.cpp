@@ -25,10 +25,7 @@ double nice_ceiling(double value) {
 // S(W): what can be released after absorbing W (Eq. 6), a staircase from 0 on.
 Drawing draw_curve(const Object& object) {
     constexpr double height = 170, left = 46, right = 10, top = 12, bottom = 34;
-    Drawing out;
-    out.title = "Instability S(W)";
-    out.width = width;
-    out.height = height;
+    Drawing out{"Instability S(W)", width, height};
     double last_W = 0, last_S = 0;
     std::vector<InstabilityStep> steps;
     for (const InstabilityStep& step : object.instability) {
@@ -52,12 +49,12 @@ Drawing draw_curve(const Object& object) {
     }
     curve.points.push_back(at(end_W, S));
     out.strokes.push_back(std::move(curve));
-    out.labels = {{{left - 5, top + 6}, Anchor::end, false, joules(end_S)},
-                  {{left - 5, height - bottom + 4}, Anchor::end, false, "0"},
-                  {{left, height - bottom + 15}, Anchor::start, false, "0"},
-                  {{width - right, height - bottom + 15}, Anchor::end, false, joules(end_W)},
-                  {{width / 2, height - 6}, Anchor::middle, false, "energy absorbed W"},
-                  {{left + 6, top + 6}, Anchor::start, false, "can release S(W)"}};
+    out.say({left - 5, top + 6}, Anchor::end, joules(end_S));
+    out.say({left - 5, height - bottom + 4}, Anchor::end, "0");
+    out.say({left, height - bottom + 15}, Anchor::start, "0");
+    out.say({width - right, height - bottom + 15}, Anchor::end, joules(end_W));
+    out.say({width / 2, height - 6}, Anchor::middle, "energy absorbed W");
+    out.say({left + 6, top + 6}, Anchor::start, "can release S(W)");
     return out;
 }
 

@@ -40,10 +40,7 @@ Drawing draw_places(const Landscape::Places& places) {
         most = std::max(most, double{value});
         deepest = std::max(deepest, -double{value});
     }
-    Drawing out;
-    out.title = "Places: work to slide it there";
-    out.width = width;
-    out.height = top + size + 24;
+    Drawing out{"Places: work to slide it there", width, top + size + 24};
     Drawing::Raster raster{{left, top}, size, places.side, {}, palette()};
     for (std::int32_t row = places.side - 1; row >= 0; --row) {
         for (std::int32_t column = 0; column < places.side; ++column) {
@@ -61,15 +58,12 @@ Drawing draw_places(const Landscape::Places& places) {
     out.strokes.push_back(
         {Style::axis, {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}});
     out.dots.push_back({Style::now, {left + size / 2, top + size / 2}, 4});
-    out.labels.push_back(
-        {{left, bottom + 16},
-         Anchor::start,
-         false,
-         to_digits(places.side * places.step_m, 2) + " m across, north at the top"});
+    out.say({left, bottom + 16}, Anchor::start,
+            to_digits(places.side * places.step_m, 2) + " m across, north at the top");
     double y = top + 4;
     const auto key = [&](std::uint8_t code, const std::string& text) {
         out.swatches.push_back({{right + 12, y}, 14, 12, raster.palette[code]});
-        out.labels.push_back({{right + 32, y + 10}, Anchor::start, false, text});
+        out.say({right + 32, y + 10}, Anchor::start, text);
         y += 20;
     };
     key(work, "0 J, as it is");

@@ -5,19 +5,15 @@
 #include <numbers>
 #include <utility>
 
+#include "core/vectors.h"
 #include "report/drawing_parts.h"
+#include "report/view_frame.h"
 
 namespace topple::report {
 namespace {
 
 using Style = Drawing::Style;
 using Anchor = Drawing::Anchor;
-
-Vec3 in_view(const Scene& scene, const Vec3& v) {
-    const Mat4& m = scene.manhattan_from_input;
-    return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
-            m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
-}
 
 // The lowest pass out of the basin that the object is in, or none.
 const Landscape::Pass* lowest_pass(const Landscape& l) {
@@ -30,16 +26,14 @@ const Landscape::Pass* lowest_pass(const Landscape& l) {
 class SphereMap {
   public:
     SphereMap(const Scene& scene, const Object& object)
-        : scene_(scene), l_(object.landscape), weight_N_(object.mass_kg * 9.80665) {}
+        : room_from_input_(rotation_of(scene.manhattan_from_input)),
+          l_(object.landscape),
+          weight_N_(object.mass_kg * 9.80665) {}
 
     Drawing draw() {
-        out_.title = "Poses: energy of leaning each way";
-        out_.width = width;
-        out_.height = 2 * radius + 92;
         Drawing::Sphere sphere{middle, radius, {}, std::numeric_limits<double>::infinity(), 0};
         for (const Vec3& corner : l_.hull_m) {
-            const Vec3 v = in_view(scene_, corner);
-            sphere.corners.push_back(v);
+            const Vec3 v = sphere.corners.emplace_back(turned(room_from_input_, corner));
             sphere.highest_m = std::max(sphere.highest_m, std::hypot(v[0], v[1], v[2]));
         }
         for (const Landscape::Pose& pose : l_.poses)
@@ -58,13 +52,9 @@ class SphereMap {
                                                        {{0, radius + 23}, "S"},
                                                        {{-radius - 18, 4}, "W"}};
         for (const auto& [at, text] : sides)
-            out_.labels.push_back(
-                {{middle[0] + at[0], middle[1] + at[1]}, Anchor::middle, false, text});
-        out_.labels.push_back(
-            {{width / 2, out_.height - 24},
-             Anchor::middle,
-             false,
-             "middle (+): as it is \xc2\xb7 rim: upside down \xc2\xb7 lines: basins"});
+            out_.say({middle[0] + at[0], middle[1] + at[1]}, Anchor::middle, text);
+        out_.say({width / 2, out_.height - 24}, Anchor::middle,
+                 "middle (+): as it is \xc2\xb7 rim: upside down \xc2\xb7 lines: basins");
         key();
         return std::move(out_);
     }
@@ -74,7 +64,7 @@ class SphereMap {
     static constexpr Point middle{width / 2, radius + 27};
 
     Point place(const Vec3& up) const {
-        const Point at = map_of(in_view(scene_, up));
+        const Point at = map_of(turned(room_from_input_, up));
         return {middle[0] + radius * at[0], middle[1] + radius * at[1]};
     }
     static double apart(const Point& a, const Point& b) {
@@ -91,9 +81,8 @@ class SphereMap {
         const Drawing::Sphere& s = *out_.sphere;
         const double now_m = -lowest_of(s.corners, {0, 0, 1});
         const auto energy = [&](double height_m) { return joules(weight_N_ * (height_m - now_m)); };
-        out_.labels.push_back({{x - 5, y + 9}, Anchor::end, false, energy(s.lowest_m)});
-        out_.labels.push_back(
-            {{x + step * bands + 5, y + 9}, Anchor::start, false, energy(s.highest_m)});
+        out_.say({x - 5, y + 9}, Anchor::end, energy(s.lowest_m));
+        out_.say({x + step * bands + 5, y + 9}, Anchor::start, energy(s.highest_m));
     }
 
     // Arcs of great circles as short strokes. Past the rim's point they go on at its other side.
@@ -107,19 +96,11 @@ class SphereMap {
         for (std::size_t n = 0; n < pass.border.size(); ++n) {
             const Vec3& to = pass.border[n];
             const Vec3& from = pass.border[n == 0 ? 0 : n - 1];
-            const double cosine = from[0] * to[0] + from[1] * to[1] + from[2] * to[2];
-            const int pieces = std::max(
-                1, static_cast<int>(std::ceil(std::acos(std::clamp(cosine, -1.0, 1.0)) / step)));
+            const double angle = std::acos(std::clamp(dot(from, to), -1.0, 1.0));
+            const int pieces = std::max(1, static_cast<int>(std::ceil(angle / step)));
             for (int p = 1; p <= pieces; ++p) {
                 const double t = static_cast<double>(p) / pieces;
-                Vec3 d{};
-                double length = 0;
-                for (std::size_t a = 0; a < 3; ++a) {
-                    d[a] = from[a] + t * (to[a] - from[a]);
-                    length += d[a] * d[a];
-                }
-                for (double& x : d) x /= std::sqrt(length);
-                const Point at = place(d);
+                const Point at = place(topple::unit(along(from, t, minus(to, from))));
                 const bool last = n + 1 == pass.border.size() && p == pieces;
                 if (!stroke.points.empty() && apart(stroke.points.back(), at) > radius / 2) end();
                 if (stroke.points.empty() || last || apart(stroke.points.back(), at) >= least)
@@ -148,15 +129,14 @@ class SphereMap {
             const Point at = place(l_.poses[n].up);
             const bool now = static_cast<std::int32_t>(n) == l_.now;
             out_.dots.push_back({now ? Style::now : Style::pose, at, 8});
-            out_.labels.push_back(
-                {{at[0], at[1] + 4}, Anchor::middle, now, std::to_string(number[n])});
+            out_.say({at[0], at[1] + 4}, Anchor::middle, std::to_string(number[n]), now);
         }
     }
 
-    const Scene& scene_;
+    std::array<Vec3, 3> room_from_input_;
     const Landscape& l_;
     double weight_N_;
-    Drawing out_;
+    Drawing out_{"Poses: energy of leaning each way", width, 2 * radius + 92};
 };
 
 }  // namespace

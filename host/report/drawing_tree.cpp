@@ -22,9 +22,6 @@ class Tree {
 
     Drawing draw() {
         collect();
-        out_.title = "Disconnectivity graph";
-        out_.width = width;
-        out_.height = height;
         for (const Join& join : joins_) merge(join);
         finish();
         return std::move(out_);
@@ -153,21 +150,21 @@ class Tree {
         }
         const double least = broken_ ? 0 : low_;
         for (const double energy : {least, high_})
-            out_.labels.push_back({{left - 12, y(energy) + 4}, Anchor::end, false, joules(energy)});
+            out_.say({left - 12, y(energy) + 4}, Anchor::end, joules(energy));
         if (least < 0 && std::abs(y(0) - y(low_)) > 14 && std::abs(y(0) - y(high_)) > 14)
-            out_.labels.push_back({{left - 12, y(0) + 4}, Anchor::end, false, "0 J"});
+            out_.say({left - 12, y(0) + 4}, Anchor::end, "0 J");
         for (std::size_t n = 0; n < energy_.size(); ++n) {
             if (name_[n].empty()) continue;
             const bool now = static_cast<std::int32_t>(n) == l_.now;
             out_.dots.push_back(
                 {now ? Style::now : Style::pose, {leaf_[n], y(energy_[n])}, now ? 5.0 : 3.5});
-            out_.labels.push_back({{leaf_[n], y(energy_[n]) + 18}, Anchor::middle, now, name_[n]});
+            out_.say({leaf_[n], y(energy_[n]) + 18}, Anchor::middle, name_[n], now);
         }
     }
 
     const Object& object_;
     const Landscape& l_;
-    Drawing out_;
+    Drawing out_{"Disconnectivity graph", width, height};
     std::vector<std::string> name_;  // empty: not shown
     std::vector<double> energy_;
     std::vector<double> leaf_;  // x of each

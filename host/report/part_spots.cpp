@@ -12,9 +12,7 @@ constexpr std::uint8_t deep = 4;  // cells
 
 template <class Call>
 void each_beside(const Cell& cell, const CellTable& table, const Call& call) {
-    for (std::size_t face = 0; face < 6; ++face) {
-        auto index = cell.index;
-        index[face / 2] += face % 2 == 0 ? -1 : 1;
+    for (const auto& index : beside(cell.index)) {
         const std::uint32_t other = table.find(index);
         if (other != CellTable::absent) call(other);
     }

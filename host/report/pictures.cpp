@@ -12,6 +12,7 @@
 #include "core/vectors.h"
 #include "io/palette.h"
 #include "report/scene_image.h"
+#include "report/view_frame.h"
 #include "safety/disturbances.h"
 
 namespace topple::report {
@@ -24,18 +25,12 @@ constexpr std::array<double, 4> margin{24, 24, 76, 24};
 constexpr std::size_t labelled = 10;
 
 Bytes3 faded(const Bytes3& colour, double share) {
-    constexpr Bytes3 pale{222, 223, 222};
-    Bytes3 out{};
-    for (std::size_t c = 0; c < 3; ++c)
-        out[c] = static_cast<std::uint8_t>(std::lround(colour[c] + (pale[c] - colour[c]) * share));
-    return out;
+    return colour_along(std::array{colour, Bytes3{222, 223, 222}}, share);
 }
 
 double largest_risk(const Object& object) {
     double most = 0;
-    for (const auto& [name, risk] : object.risk_J) {
-        if (risk > most) most = risk;
-    }
+    for (const auto& [name, risk] : object.risk_J) most = risk > most ? risk : most;
     return most;
 }
 
@@ -96,20 +91,18 @@ class Pictures {
     }
 
     void write_photo() {
-        Canvas canvas = page("photo", colours(false, 1), Overlay(image_), "Photo",
-                             "The scan's own colours; what it does not show has those around it. "
-                             "Labels: the riskiest objects and their unsafety.",
-                             true);
-        for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, true);
-        canvas.save();
+        save(page("photo", colours(false, 1), Overlay(image_), "Photo",
+                  "The scan's own colours; what it does not show has those around it. "
+                  "Labels: the riskiest objects and their unsafety.",
+                  true),
+             true);
     }
 
     void write_objects() {
-        Canvas canvas = page("objects", colours(false, 0), Overlay(image_), "Objects",
-                             "Each colour is one body that moves as a whole. Grey: the ground and "
-                             "what is fixed to it. Numbers: the riskiest objects.");
-        for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, false);
-        canvas.save();
+        save(page("objects", colours(false, 0), Overlay(image_), "Objects",
+                  "Each colour is one body that moves as a whole. Grey: the ground and "
+                  "what is fixed to it. Numbers: the riskiest objects."),
+             false);
     }
 
     void write_risk() {
@@ -123,8 +116,7 @@ class Pictures {
         };
         if (std::ranges::any_of(scene_.objects, unranked))
             swatch(canvas, unranked_colour, "not ranked: nothing was seen to hold it");
-        for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, true);
-        canvas.save();
+        save(std::move(canvas), true);
     }
 
     void write_walks() {
@@ -245,6 +237,12 @@ class Pictures {
         return canvas;
     }
 
+    // With the labels of the riskiest objects, and with their unsafety.
+    void save(Canvas canvas, bool unsafety) {
+        for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, unsafety);
+        canvas.save();
+    }
+
     // Strays of the scan may lie behind it.
     static void headline(Canvas& canvas, double base, const std::string& says, const Font& font) {
         constexpr Colour behind{0.917, 0.931, 0.947};
@@ -271,12 +269,8 @@ class Pictures {
 
     // The object's number, and its unsafety, where its middle is seen; moved up from others'.
     void label(Canvas& canvas, const Object& object, bool unsafety) {
-        Vec3 middle{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t c = 0; c < 3; ++c)
-                middle[axis] += view_.view_from_input[axis][c] * object.center_of_mass_m[c];
-        }
-        const auto [x, y, depth] = image_.camera().project(middle);
+        const auto [x, y, depth] =
+            image_.camera().project(turned(view_.view_from_input, object.center_of_mass_m));
         if (!(depth > 0 && x > 0 && x < width && y > 0 && y < height)) return;
         const std::string number = std::to_string(object.id);
         std::string says = number;

@@ -17,11 +17,9 @@
 #include "core/thread_pool.h"
 #include "io/file_writer.h"
 #include "io/palette.h"
-#include "report/base64.h"
-#include "report/deflated.h"
 #include "report/drawing.h"
+#include "report/embedded.h"
 #include "report/page_parts.h"
-#include "report/script_safe.h"
 #include "report/view_data.h"
 #include "result/scene_json.h"
 #include "safety/disturbances.h"
@@ -77,12 +75,8 @@ Records along_a_curve(const Records& records) {
     }
     std::ranges::sort(order);
     Records out;
+    for (const auto& [key, i] : order) out.add(records.at(i), !records.photo.empty());
     out.total = records.total;
-    for (const auto& [key, i] : order) {
-        out.cell.push_back(records.cell[i]);
-        out.aux.push_back(records.aux[i]);
-        if (!records.photo.empty()) out.photo.push_back(records.photo[i]);
-    }
     return out;
 }
 
@@ -92,15 +86,20 @@ Json points_json(const Records& points) {
     return records_json(sorted);
 }
 
+// All numbers of some rows, one after the other, each to the nearest part of one.
+template <class Rows>
+Json rounded(const Rows& rows, double parts) {
+    Json numbers = Json::array();
+    for (const auto& row : rows)
+        for (const double x : row) numbers.push_back(std::round(parts * x) / parts);
+    return numbers;
+}
+
 // To a tenth of a millimetre.
 Json spots_json(const PackedView& view) {
     Json spots = Json::array();
-    for (const auto& spot : view.spots) {
-        Json place = Json::array();
-        if (spot)
-            for (const double x : *spot) place.push_back(std::round(10000 * x) / 10000);
-        spots.push_back(std::move(place));
-    }
+    for (const auto& spot : view.spots)
+        spots.push_back(spot ? rounded(std::array<Vec3, 1>{*spot}, 10000) : Json::array());
     return spots;
 }
 
@@ -124,12 +123,7 @@ Json surface_json(const PackedSurface& surface, ThreadPool& pool) {
 // Places to the millimetre.
 Json walks_json(const PackedWalks& walks) {
     Json paths = Json::array();
-    for (const auto& path : walks.paths) {
-        Json corners = Json::array();
-        for (const auto& corner : path)
-            for (const float x : corner) corners.push_back(std::round(1000 * double{x}) / 1000);
-        paths.push_back(std::move(corners));
-    }
+    for (const auto& path : walks.paths) paths.push_back(rounded(path, 1000));
     return {{"nx", walks.nx},
             {"ny", walks.ny},
             {"corner_m", walks.corner_m},
@@ -165,7 +159,7 @@ Json view_json(const PackedView& view, Json points, ThreadPool& pool) {
 }
 
 Json point_json(const Point& p) {
-    return {std::round(10 * p[0]) / 10, std::round(10 * p[1]) / 10};
+    return rounded(std::array<Point, 1>{p}, 10);
 }
 
 // As short as it can be: a scene has hundreds of these.
@@ -175,18 +169,13 @@ Json drawing_json(const Drawing& d) {
     const auto style = [&](Drawing::Style s) { return styles[static_cast<std::size_t>(s)]; };
     Json strokes = Json::array(), dots = Json::array(), labels = Json::array(),
          swatches = Json::array();
-    for (const Drawing::Stroke& stroke : d.strokes) {
-        Json points = Json::array();
-        for (const Point& p : stroke.points)
-            for (const double x : p) points.push_back(std::round(10 * x) / 10);
-        strokes.push_back({style(stroke.style), std::move(points)});
-    }
+    for (const Drawing::Stroke& stroke : d.strokes)
+        strokes.push_back({style(stroke.style), rounded(stroke.points, 10)});
     for (const Drawing::Dot& dot : d.dots)
         dots.push_back({style(dot.style), point_json(dot.at), dot.radius});
-    for (const Drawing::Label& label : d.labels) {
+    for (const Drawing::Label& label : d.labels)
         labels.push_back({anchors[static_cast<std::size_t>(label.anchor)], point_json(label.at),
                           label.strong, label.text});
-    }
     for (const Drawing::Swatch& s : d.swatches)
         swatches.push_back({s.colour, point_json(s.corner), s.width, s.height});
     Json json{{"title", d.title},
@@ -251,29 +240,6 @@ Json colours_json(const PackedView& view) {
     return colours;
 }
 
-std::string html_escaped(std::string_view text) {
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
-
 // What the page is to say of disturbances and how it draws them.
 Json disturbances_json() {
     static constexpr std::array strengths{"visits", "mean", "speed"};
@@ -324,9 +290,7 @@ Json below_hazard_json(const Scene& scene) {
 std::string source_name(const std::string& source) {
     const auto end = source.find_last_not_of('/');
     if (end == std::string::npos) return source;
-    const auto slash = source.find_last_of('/', end);
-    return source.substr(slash == std::string::npos ? 0 : slash + 1,
-                         slash == std::string::npos ? end + 1 : end - slash);
+    return std::filesystem::path(source.substr(0, end + 1)).filename().string();
 }
 
 // All that a stranger may have written is read by a person: what steers a terminal or turns the

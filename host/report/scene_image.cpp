@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/vectors.h"
 
@@ -11,13 +12,6 @@ namespace topple::report {
 namespace {
 
 constexpr int fine = 2;  // pixels are means of fine x fine
-
-bool unit(Vec3& v) {
-    const double length = std::sqrt(dot(v, v));
-    if (!(length > 1e-9)) return false;
-    for (double& c : v) c /= length;
-    return true;
-}
 
 struct Box {
     Vec3 low{-0.5, -0.5, -0.5}, high{0.5, 0.5, 0.5};
@@ -88,7 +82,8 @@ void SceneImage::draw_solids() {
     for (std::size_t n = 0; n < view_.voxels.cell.size(); ++n) {
         const auto& cell = view_.voxels.cell[n];
         const auto& aux = view_.voxels.aux[n];
-        Vec3 centre{}, seen{double(aux[0]), double(aux[1]), double(aux[2])};
+        Vec3 centre{};
+        const Vec3 seen{double(aux[0]), double(aux[1]), double(aux[2])};
         for (std::size_t axis = 0; axis < 3; ++axis)
             centre[axis] = view_.origin_m[axis] + view_.step_m[axis] * cell[axis];
         const Vec3 to_eye = along(camera_.eye, -1, centre);
@@ -96,14 +91,13 @@ void SceneImage::draw_solids() {
         const bool background = object < 0 || grounded_.contains(object);
         // A wall or ceiling that is seen from behind would hide the room.
         if (background && dot(seen, to_eye) < 0) continue;
-        const bool smooth = unit(seen);
+        const Vec3 smooth = topple::unit(seen);  // zero where it is not known
         for (std::size_t face = 0; face < 6; ++face) {
             const Vec3& normal = normals[face];
             if (!(aux[3] >> face & 1) || dot(normal, to_eye) <= 0) continue;
             // The mean normal of what was seen there smooths the voxels' steps.
-            Vec3 facing = normal;
-            if (smooth) facing = along(normal, dot(seen, normal) < 0 ? -2 : 2, seen);
-            unit(facing);
+            const Vec3 facing =
+                topple::unit(along(normal, dot(smooth, normal) < 0 ? -2 : 2, smooth));
             const Vec3& side = normals[(face + 2) % 6 / 2 * 2 + 1];
             const Vec3& other = normals[(face + 4) % 6 / 2 * 2 + 1];
             add_face(centre, normal, side, other,
@@ -131,9 +125,7 @@ void SceneImage::add_face(const Vec3& centre, const Vec3& normal, const Vec3& si
 void SceneImage::find_seen() {
     constexpr std::size_t few = 8;
     std::map<std::int32_t, std::size_t> pixels;
-    const auto all =
-        static_cast<std::size_t>(solids_.width()) * static_cast<std::size_t>(solids_.height());
-    for (std::size_t at = 0; at < all; ++at) {
+    for (std::size_t at = 0; at < solids_.index(0, solids_.height()); ++at) {
         const std::int32_t object = object_at(at);
         if (object >= 0 && ++pixels[object] == few) seen_.insert(object);
     }
@@ -142,31 +134,17 @@ void SceneImage::find_seen() {
 // Corners and what lies under things are darker: a share of the places around each pixel that are
 // nearer to the camera, but not by much.
 void SceneImage::find_crevices() {
-    constexpr std::array<std::array<double, 2>, 16> around{{{1, 0},
-                                                            {0.92, 0.38},
-                                                            {0.71, 0.71},
-                                                            {0.38, 0.92},
-                                                            {0, 1},
-                                                            {-0.38, 0.92},
-                                                            {-0.71, 0.71},
-                                                            {-0.92, 0.38},
-                                                            {-1, 0},
-                                                            {-0.92, -0.38},
-                                                            {-0.71, -0.71},
-                                                            {-0.38, -0.92},
-                                                            {0, -1},
-                                                            {0.38, -0.92},
-                                                            {0.71, -0.71},
-                                                            {0.92, -0.38}}};
+    std::array<std::array<double, 2>, 16> around;  // directions, to hundredths
+    for (std::size_t n = 0; n < around.size(); ++n) {
+        const double angle = std::numbers::pi * static_cast<double>(n) / 8;
+        around[n] = {std::round(100 * std::cos(angle)) / 100,
+                     std::round(100 * std::sin(angle)) / 100};
+    }
     const double radius_m = 0.025 * reach_m_;
-    open_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 1);
-    const auto index = [&](int x, int y) {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(solids_.width()) +
-               static_cast<std::size_t>(x);
-    };
+    open_.assign(static_cast<std::size_t>(width_ * height_), 1);
     for (int y = 0; y < height_; ++y) {
         for (int x = 0; x < width_; ++x) {
-            const std::size_t at = index(fine * x, fine * y);
+            const std::size_t at = solids_.index(fine * x, fine * y);
             if (solids_.what(at) == DepthImage::nothing) continue;
             const double depth = solids_.depth(at), radius = fine_camera_.focal * radius_m / depth;
             double nearer = 0;
@@ -178,13 +156,12 @@ void SceneImage::find_crevices() {
                 // Against the place opposite to it, so that a slope is no crevice.
                 const int qx = 2 * fine * x - px, qy = 2 * fine * y - py;
                 if (qx < 0 || qy < 0 || qx >= solids_.width() || qy >= solids_.height()) continue;
-                const double before = depth - solids_.depth(index(px, py));
-                const double behind = solids_.depth(index(qx, qy)) - depth;
+                const double before = depth - solids_.depth(solids_.index(px, py));
+                const double behind = solids_.depth(solids_.index(qx, qy)) - depth;
                 const double step = before - std::clamp(behind, -radius_m, radius_m);
                 if (before < 1.2 * radius_m) nearer += std::clamp(step / radius_m, 0.0, 1.0);
             }
-            open_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                  static_cast<std::size_t>(x)] =
+            open_[static_cast<std::size_t>(y * width_ + x)] =
                 static_cast<float>(1 - nearer / double(around.size()));
         }
     }
@@ -230,14 +207,10 @@ Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group, const Over
                             top.green + (bottom.green - top.green) * down,
                             top.blue + (bottom.blue - top.blue) * down};
         for (int x = 0; x < width_; ++x) {
-            const double open =
-                double{open_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                             static_cast<std::size_t>(x)]};
+            const double open{open_[static_cast<std::size_t>(y * width_ + x)]};
             Colour sum;
             for (int part = 0; part < fine * fine; ++part) {
-                const auto at = static_cast<std::size_t>(fine * y + part / fine) *
-                                    static_cast<std::size_t>(front.width()) +
-                                static_cast<std::size_t>(fine * x + part % fine);
+                const std::size_t at = front.index(fine * x + part % fine, fine * y + part / fine);
                 std::uint32_t what = front.what(at);
                 if (what == DepthImage::nothing) what = solids_.what(at);
                 Colour c = behind;

@@ -53,16 +53,14 @@ void SurfacePacker::add(const ObjectSurface& surface,
     }
 }
 
-PackedSurface SurfacePacker::take(
-    const std::function<SurfaceVertex(const ObjectSurface&, std::size_t, std::uint16_t)>& vertex_of,
-    ThreadPool& pool) {
+PackedSurface SurfacePacker::take(const VertexOf& vertex_of, ThreadPool& pool) {
     PackedSurface out;
     out.cell.resize(vertex_.size());
     out.aux.resize(vertex_.size());
     if (coloured_) out.photo.resize(vertex_.size());
     pool.each(vertex_.size(), 4096, [&](std::size_t n) {
         const Vertex& from = vertex_[n];
-        const SurfaceVertex v = vertex_of(*from.surface, from.number, from.group);
+        const Record v = vertex_of(*from.surface, from.number, from.group);
         out.cell[n] = v.cell;
         out.aux[n] = v.aux;
         if (coloured_) out.photo[n] = v.photo;

@@ -12,12 +12,6 @@
 
 namespace topple::report {
 
-struct SurfaceVertex {
-    std::array<std::uint16_t, 4> cell{};
-    std::array<std::int8_t, 4> aux{};
-    std::array<std::uint8_t, 4> photo{};
-};
-
 // Of each axis -1, 0 or 1, as PackedSurface has it.
 std::uint8_t direction_code(const std::array<float, 3>& direction);
 inline constexpr std::uint8_t no_direction = 13;
@@ -34,9 +28,8 @@ class SurfacePacker {
     // What it will take.
     std::size_t bytes() const { return vertex_.size() * (coloured_ ? 16 : 12) + index_.size() * 6; }
     // vertex_of: vertex number v of a surface, in a group; several threads call it.
-    PackedSurface take(const std::function<SurfaceVertex(const ObjectSurface&, std::size_t,
-                                                         std::uint16_t)>& vertex_of,
-                       ThreadPool& pool);
+    using VertexOf = std::function<Record(const ObjectSurface&, std::size_t, std::uint16_t)>;
+    PackedSurface take(const VertexOf& vertex_of, ThreadPool& pool);
 
   private:
     // A vertex, before it is known whether it is needed.

@@ -5,7 +5,7 @@
 
 #include "io/replace_file.h"
 #include "io/text.h"
-#include "report/script_safe.h"
+#include "report/embedded.h"
 
 namespace topple::report {
 

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
 
 #include "core/scene_bounds.h"
+#include "core/vectors.h"
 #include "report/cell_colours.h"
 #include "report/cells.h"
 #include "report/field_arrows.h"
@@ -40,8 +42,16 @@ class Groups {
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint16_t> ids_;
 };
 
-std::int8_t signed_byte(double value) {
-    return static_cast<std::int8_t>(std::lround(std::clamp(value, -1.0, 1.0) * 127));
+// As of Record.
+std::array<std::int8_t, 4> aux(const Vec3& normal, int flags) {
+    const auto byte = [&](std::size_t axis) {
+        return static_cast<std::int8_t>(std::lround(std::clamp(normal[axis], -1.0, 1.0) * 127));
+    };
+    return {byte(0), byte(1), byte(2), static_cast<std::int8_t>(flags)};
+}
+
+Vec3 as_vec3(const std::array<float, 3>& v) {
+    return {double{v[0]}, double{v[1]}, double{v[2]}};
 }
 
 }  // namespace
@@ -223,8 +233,7 @@ class ViewPacker::Work {
         std::vector<std::optional<Vec3>> near(view_.groups.size());
         for (std::size_t g = 0; g < near.size(); ++g) {
             if (chosen[g] == CellTable::absent || view_.groups[g].first < 0) continue;
-            const Vec3 p = centre_of(cells[chosen[g]], edge);
-            near[g] = turned_back(view_.view_from_input, p);
+            near[g] = turned_back(view_.view_from_input, centre_of(cells[chosen[g]], edge));
         }
         view_.spots = nearest_points(scene_.points, view_.groups, std::move(near));
     }
@@ -282,13 +291,11 @@ class ViewPacker::Work {
         auto& out = view_.voxels;
         for (const auto& cell : cells) {
             if (cell.exposed == 0 || out.cell.size() == limits_.voxels) continue;
-            out.cell.push_back(quantised(centre_of(cell, edge), cell.group));
-            const auto flags = static_cast<std::int8_t>(cell.exposed | (cell.completed ? 64 : 0));
-            out.aux.push_back({signed_byte(cell.normal[0]), signed_byte(cell.normal[1]),
-                               signed_byte(cell.normal[2]), flags});
+            Record record{quantised(centre_of(cell, edge), cell.group),
+                          aux(as_vec3(cell.normal), cell.exposed | (cell.completed ? 64 : 0))};
             if (view_.coloured)
-                out.photo.push_back(
-                    photo(colours_[static_cast<std::size_t>(&cell - cells.data())]));
+                record.photo = photo(colours_[static_cast<std::size_t>(&cell - cells.data())]);
+            out.add(record, view_.coloured);
         }
     }
 
@@ -302,28 +309,23 @@ class ViewPacker::Work {
             });
         }
         if (packer.bytes() > limits_.surface_bytes) return;
-        view_.surface =
-            packer.take([&](const ObjectSurface& surface, std::size_t v,
-                            std::uint16_t group) { return vertex_of(surface, v, group); },
-                        pool);
-        view_.voxels.cell.clear();
-        view_.voxels.aux.clear();
-        view_.voxels.photo.clear();
+        view_.surface = packer.take(std::bind_front(&Work::vertex_of, this), pool);
+        const std::size_t total = view_.voxels.total;
+        view_.voxels = {};
+        view_.voxels.total = total;
     }
 
-    SurfaceVertex vertex_of(const ObjectSurface& surface, std::size_t v,
-                            std::uint16_t group) const {
+    Record vertex_of(const ObjectSurface& surface, std::size_t v, std::uint16_t group) const {
         const auto& at = surface.vertex[v];
         const auto& normal = surface.normal[v];
         const Vec3 p = turned(view_.view_from_input, at[0], at[1], at[2]),
                    n = turned(view_.view_from_input, normal[0], normal[1], normal[2]);
-        SurfaceVertex out;
+        Record out;
         out.cell = quantised(p, group);
         const bool background = is_background(surface.object);
         const Cell* cell = cell_below(p, n, background);
         const auto facing = background && cell ? direction_code(cell->normal) : no_direction;
-        out.aux = {signed_byte(n[0]), signed_byte(n[1]), signed_byte(n[2]),
-                   static_cast<std::int8_t>(facing + (cell && cell->completed ? 64 : 0))};
+        out.aux = aux(n, facing + (cell && cell->completed ? 64 : 0));
         if (!surface.colour.empty() && surface.colour[v])
             out.photo = photo({*surface.colour[v], true});
         return out;
@@ -339,19 +341,14 @@ class ViewPacker::Work {
                        ? nullptr
                        : &cells_[found];
         };
-        const auto along = [&](const Cell& cell) {
-            double sum = 0;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                sum += normal[axis] * double{cell.normal[axis]};
-            return std::abs(sum);
+        const auto aligned = [&](const Cell& cell) {
+            return std::abs(dot(normal, as_vec3(cell.normal)));
         };
         const Cell* nearest = nullptr;
         for (const double depth : {0.5, 1.0, 0.0}) {
-            Vec3 at = p;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                at[axis] -= depth * view_.cube_m * normal[axis];
+            const Vec3 at = along(p, -(depth * view_.cube_m), normal);
             const Cell* cell = cell_at(index_of(at, view_.cube_m));
-            if (cell && (!background || along(*cell) > same)) return cell;
+            if (cell && (!background || aligned(*cell) > same)) return cell;
             if (!nearest) nearest = cell;
         }
         if (nearest && !background) return nearest;
@@ -361,8 +358,8 @@ class ViewPacker::Work {
         for (int n = 0; n < 125; ++n) {
             const Cell* cell =
                 cell_at({middle[0] + n / 25 - 2, middle[1] + n / 5 % 5 - 2, middle[2] + n % 5 - 2});
-            if (!cell || along(*cell) <= most) continue;
-            most = along(*cell);
+            if (!cell || aligned(*cell) <= most) continue;
+            most = aligned(*cell);
             best = cell;
         }
         return best;
@@ -381,17 +378,18 @@ class ViewPacker::Work {
                 continue;
             const auto p = place(points, i);
             if (!drawn(p)) continue;
-            out.cell.push_back(quantised(p, groups_.of(points.primitive[i], points.object[i])));
+            Record record{quantised(p, groups_.of(points.primitive[i], points.object[i]))};
             Vec3 n{};
             if (!points.nx.empty())
                 n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
             if (!finite(n)) n = {};
             if (points.nx.empty() && is_background(points.object[i])) n = background_normal(p);
-            out.aux.push_back({signed_byte(n[0]), signed_byte(n[1]), signed_byte(n[2]), 0});
+            record.aux = aux(n, 0);
             if (view_.coloured) {
                 const Rgb8 colour = colour_of_point(i);
-                out.photo.push_back(photo({colour, colour != Rgb8{0, 0, 0}}));
+                record.photo = photo({colour, colour != Rgb8{0, 0, 0}});
             }
+            out.add(record, view_.coloured);
         }
     }
 
@@ -400,8 +398,7 @@ class ViewPacker::Work {
         if (cells_.empty()) return {};
         const auto found = table_.find(index_of(p, view_.cube_m));
         if (found == CellTable::absent || !cells_[found].background) return {};
-        const auto& n = cells_[found].normal;
-        return {double{n[0]}, double{n[1]}, double{n[2]}};
+        return as_vec3(cells_[found].normal);
     }
 
     const Scene& scene_;

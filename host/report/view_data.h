@@ -33,22 +33,32 @@ struct ViewLimits {
 // for voxels the exposed faces (bits -x +x -y +y -z +z) and, in bit 6, whether it was completed.
 // photo: the colour in the scan, sRGB, and 255, or 0 where it is not known; empty where the scan
 // has no colours.
+struct Record {
+    std::array<std::uint16_t, 4> cell{};
+    std::array<std::int8_t, 4> aux{};
+    std::array<std::uint8_t, 4> photo{};
+};
 struct Records {
     std::vector<std::array<std::uint16_t, 4>> cell;
     std::vector<std::array<std::int8_t, 4>> aux;
     std::vector<std::array<std::uint8_t, 4>> photo;
     std::size_t total = 0;  // how many the scene has
+
+    void add(const Record& record, bool coloured) {
+        cell.push_back(record.cell);
+        aux.push_back(record.aux);
+        if (coloured) photo.push_back(record.photo);
+    }
+    Record at(std::size_t n) const {
+        return {cell[n], aux[n], photo.empty() ? Record{}.photo : photo[n]};
+    }
 };
 
-// The surface of the solids. cell: place and group, as of Records. aux: the normal in 1/127, then
+// The surface of the solids: a record for each vertex, but that its aux has, after the normal,
 // where a room sees the background from: x + 1 + 3 (y + 1) + 9 (z + 1) of a direction of -1, 0 and
-// 1, 13 for things; and in bit 6 whether it was completed. photo: as of Records. index: of
-// each triangle's corners how many vertices back it is, 0 for the next one that no triangle before
-// had.
-struct PackedSurface {
-    std::vector<std::array<std::uint16_t, 4>> cell;
-    std::vector<std::array<std::int8_t, 4>> aux;
-    std::vector<std::array<std::uint8_t, 4>> photo;
+// 1, 13 for things; and in bit 6 whether it was completed. index: of each triangle's corners how
+// many vertices back it is, 0 for the next one that no triangle before had.
+struct PackedSurface : Records {
     std::vector<std::array<std::uint16_t, 3>> index;
 };
 

@@ -11,10 +11,6 @@ namespace {
 
 using Rows = std::array<Vec3, 3>;
 
-Rows rows_of(const Mat4& m) {
-    return {Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}};
-}
-
 bool is_rotation(const Rows& r) {
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t k = i; k < 3; ++k) {
@@ -26,12 +22,13 @@ bool is_rotation(const Rows& r) {
 
 }  // namespace
 
+Rows rotation_of(const Mat4& m) {
+    return {Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}};
+}
+
 Rows view_frame(const Scene& scene) {
-    const double length = std::sqrt(dot(scene.up, scene.up));
-    const Vec3 up = length > 1e-9
-                        ? Vec3{scene.up[0] / length, scene.up[1] / length, scene.up[2] / length}
-                        : Vec3{0, 0, 1};
-    const auto given = rows_of(scene.manhattan_from_input);
+    const Vec3 up = length(scene.up) > 1e-9 ? topple::unit(scene.up) : Vec3{0, 0, 1};
+    const auto given = rotation_of(scene.manhattan_from_input);
     if (is_rotation(given) && dot(given[2], up) > 0.9) return given;
     // The input axis that is farthest from up becomes x.
     std::size_t least = 0;
@@ -40,10 +37,7 @@ Rows view_frame(const Scene& scene) {
     }
     Vec3 x{};
     x[least] = 1;
-    const double along = dot(x, up);
-    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] -= along * up[axis];
-    const double norm = std::sqrt(dot(x, x));
-    for (auto& value : x) value /= norm;
+    x = topple::unit(along(x, -dot(x, up), up));
     return {x, cross(up, x), up};
 }
 
@@ -56,10 +50,7 @@ Vec3 turned(const Rows& r, double x, double y, double z) {
 }
 
 Vec3 turned_back(const Rows& r, const Vec3& p) {
-    Vec3 out{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        out[axis] = r[0][axis] * p[0] + r[1][axis] * p[1] + r[2][axis] * p[2];
-    return out;
+    return along(along(along({}, p[0], r[0]), p[1], r[1]), p[2], r[2]);
 }
 
 bool finite(const Vec3& p) {

@@ -7,6 +7,9 @@
 
 namespace topple::report {
 
+// The rows of a transform's rotation.
+std::array<Vec3, 3> rotation_of(const Mat4& transform);
+
 // The rows of the rotation from the input to the view: the scene's own frame where it has one with
 // z up, else any with z up.
 std::array<Vec3, 3> view_frame(const Scene& scene);

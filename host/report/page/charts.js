@@ -8,6 +8,23 @@ function svgElement(name, attributes, text) {
   return node;
 }
 
+// say(x, y, anchor, text, style): writes into a drawing.
+function svgTexts(svg) {
+  return (x, y, anchor, text, style = '') => svg.append(svgElement('text', {x, y, 'text-anchor': anchor, class: style}, text));
+}
+
+// An empty chart with its axes; margins: left, right, top, bottom. x(share), y(share) of the axes.
+function chart(label, width, height, [left, right, top, bottom]) {
+  const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': label});
+  svg.append(svgElement('path', {class: 'axis', d: `M${left} ${top}V${height - bottom}H${width - right}`}));
+  return {svg, say: svgTexts(svg), x: share => left + (width - left - right) * share, y: share => height - bottom - (height - top - bottom) * share};
+}
+
+// The curve through points [x, y].
+function curve(points) {
+  return svgElement('path', {class: 'curve', d: 'M' + points.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join('L')});
+}
+
 // Two numbers in as few digits, from three on, as tell one from the other.
 function distinctNumbers(low, high) {
   if (number(low) !== number(high)) return [number(low), number(high)];
@@ -29,13 +46,8 @@ function energyChart(energies) {
   const [lowText, highText] = distinctNumbers(yLow, yHigh);
   const width = 330, height = 200, right = 10, top = 26, bottom = 34;
   const left = Math.max(46, 12 + 6.5 * Math.max(lowText.length, highText.length));
-  const x = value => left + (width - left - right) * (value - 1) / Math.max(energies.length - 1, 1);
-  const y = value => height - bottom - (height - top - bottom) * (value - yLow) / (yHigh - yLow);
-  const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': 'Energy over the sampler\u2019s iterations'});
-  svg.append(svgElement('path', {class: 'axis', d: `M${left} ${top}V${height - bottom}H${width - right}`}));
-  svg.append(svgElement('path', {class: 'curve',
-    d: points.map((p, i) => `${i ? 'L' : 'M'}${x(p[0]).toFixed(1)} ${y(p[1]).toFixed(1)}`).join('')}));
-  const say = (px, py, anchor, text) => svg.append(svgElement('text', {x: px, y: py, 'text-anchor': anchor}, text));
+  const {svg, say, x, y} = chart('Energy over the sampler\u2019s iterations', width, height, [left, right, top, bottom]);
+  svg.append(curve(points.map(([at, energy]) => [x((at - 1) / Math.max(energies.length - 1, 1)), y((energy - yLow) / (yHigh - yLow))])));
   say(left - 5, top + 9, 'end', highText);
   say(left - 5, height - bottom, 'end', lowText);
   say(left, height - bottom + 14, 'start', '1');

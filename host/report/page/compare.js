@@ -21,7 +21,7 @@ async function readScene(name, text) {
     throw new Error(`${name} is no scene of topple: it has no objects, or not the schema topple.scene/1.`);
   }
   // A report has them packed.
-  if (typeof scene.primitives === 'string') scene.primitives = JSON.parse(new TextDecoder().decode(await inflated(scene.primitives)));
+  if (typeof scene.primitives === 'string') scene.primitives = await unpacked(scene.primitives);
   return scene;
 }
 

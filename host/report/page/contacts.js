@@ -50,7 +50,7 @@ function contactGraph(scene, id, choose) {
   const row = (list, at) => top + step * ((rows - list.length) / 2 + list.indexOf(at) + 0.5);
   const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', class: 'contacts',
     'aria-label': `Contacts of ${objectName(scene, id)}`});
-  const say = (x, y, anchor, text, style) => svg.append(svgElement('text', {x, y, 'text-anchor': anchor, class: style || ''}, text));
+  const say = svgTexts(svg);
   say(xLeft, 12, 'end', 'its parts', 'strong');
   if (right.length) say(xRight, 12, 'start', 'what it touches', 'strong');
   const numbers = [], crossing = shown.filter(contact => !contact.own);

@@ -8,15 +8,12 @@ async function loadScene() {
     throw new Error('This browser is too old for this report: it can\u2019t inflate data. Chromium 80, Firefox 113 and Safari 16.4 can.');
   }
   const view = scene.view, surface = view.surface;
-  const records = [[view.voxels, 'cell', Uint16Array, 4], [view.points, 'cell', Uint16Array, 4], [surface, 'cell', Uint16Array, 4],
-    [view.voxels, 'aux', Int8Array, 4], [view.points, 'aux', Int8Array, 4], [surface, 'aux', Int8Array, 4],
-    [view.voxels, 'photo', Uint8Array, 4], [view.points, 'photo', Uint8Array, 4], [surface, 'photo', Uint8Array, 4]];
-  await Promise.all(records.filter(([owner, name]) => owner[name]).map(async ([owner, name, Type, channels]) => {
-    owner[name] = recordsOf(await inflated(owner[name]), Type, channels);
-  }));
+  const records = Object.entries({cell: Uint16Array, aux: Int8Array, photo: Uint8Array})
+    .flatMap(([name, Type]) => [view.voxels, view.points, surface].filter(owner => owner[name]).map(owner => [owner, name, Type]));
+  await Promise.all(records.map(async ([owner, name, Type]) => { owner[name] = recordsOf(await inflated(owner[name]), Type, 4); }));
   surface.index = vertexNumbers(await inflated(surface.index));
   for (const bulk of ['primitives', 'contacts', 'swc_energy', 'drawings']) {
-    scene[bulk] = JSON.parse(new TextDecoder().decode(await inflated(scene[bulk])));
+    scene[bulk] = await unpacked(scene[bulk]);
   }
   for (const name of Object.keys(view.fields)) {
     view.fields[name].arrow = new Float32Array(bytesOf(view.fields[name].arrow).buffer);
@@ -40,7 +37,12 @@ async function inflated(base64) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Undoes deflated() of host/report/deflated.h: channel by channel the steps from record to record, low bytes before high ones.
+// JSON in that format.
+async function unpacked(base64) {
+  return JSON.parse(new TextDecoder().decode(await inflated(base64)));
+}
+
+// Undoes deflated() of host/report/embedded.h: channel by channel the steps from record to record, low bytes before high ones.
 function recordsOf(bytes, Type, channels) {
   const wide = Type.BYTES_PER_ELEMENT === 2, out = new Type(bytes.length / Type.BYTES_PER_ELEMENT), count = out.length / channels;
   for (let c = 0, base = 0; c < channels; ++c, base += count * Type.BYTES_PER_ELEMENT) {
@@ -85,8 +87,11 @@ function objectColour(scene, id) {
   return colourOf(scene, scene.colourFrom.has(id) ? scene.colourFrom.get(id) : id);
 }
 
+function colourSwatch(colour) {
+  return element('span', {className: 'swatch', style: {background: css(colour)}});
+}
 function objectSwatch(scene, id) {
-  const swatch = element('span', {className: 'swatch', style: {background: css(objectColour(scene, id))}});
+  const swatch = colourSwatch(objectColour(scene, id));
   swatch.dataset.object = id;
   return swatch;
 }
@@ -130,6 +135,13 @@ function within(error) {
 
 function plural(count, noun) {
   return count.toLocaleString('en') + ' ' + noun + (count === 1 ? '' : 's');
+}
+
+// Says a text in the page's element of that id, which is hidden where there is none.
+function sayIn(id, text) {
+  const node = document.getElementById(id);
+  node.textContent = text;
+  node.hidden = !text;
 }
 
 // An element with text (never markup) and children.

@@ -71,23 +71,14 @@ function yearsText(scene, object) {
 function fragilityChart(object) {
   const f = object.fragility;
   if (!f || !f.counted || f.counted.length < 2) return null;
-  const width = 300, height = 120, left = 40, right = 8, top = 8, bottom = 26;
-  const low = Math.log(f.counted[0].pga_g), high = Math.log(f.counted[f.counted.length - 1].pga_g);
-  const x = pga => left + (Math.log(pga) - low) / (high - low) * (width - left - right);
-  const y = chance => height - bottom - chance * (height - top - bottom);
-  const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img',
-    'aria-label': 'Chance of falling over the peak acceleration of an earthquake'});
-  svg.append(svgElement('path', {class: 'axis', d: `M${left} ${top}V${height - bottom}H${width - right}`}));
+  const height = 120, left = 40, bottom = 26, low = Math.log(f.counted[0].pga_g), high = Math.log(f.counted[f.counted.length - 1].pga_g);
+  const {svg, say, x: along, y} = chart('Chance of falling over the peak acceleration of an earthquake', 300, height, [left, 8, 8, bottom]);
+  const x = pga => along((Math.log(pga) - low) / (high - low));
   if (f.pga_g !== null && f.pga_dispersion !== null) {
-    const points = [];
-    for (let n = 0; n <= 60; n++) {
-      const pga = Math.exp(low + (high - low) * n / 60);
-      points.push(`${x(pga).toFixed(1)} ${y(belowNormal(Math.log(pga / f.pga_g) / f.pga_dispersion)).toFixed(1)}`);
-    }
-    svg.append(svgElement('path', {class: 'curve', d: 'M' + points.join('L')}));
+    const peaks = [...Array(61).keys()].map(n => Math.exp(low + (high - low) * n / 60));
+    svg.append(curve(peaks.map(pga => [x(pga), y(belowNormal(Math.log(pga / f.pga_g) / f.pga_dispersion))])));
   }
   for (const step of f.counted) svg.append(svgElement('circle', {class: 'counted', cx: x(step.pga_g).toFixed(1), cy: y(step.chance).toFixed(1), r: 2}));
-  const say = (px, py, anchor, text) => svg.append(svgElement('text', {x: px, y: py, 'text-anchor': anchor}, text));
   say(left - 4, y(1) + 6, 'end', '100 %');
   say(left - 4, y(0), 'end', '0');
   for (const pga of [0.1, 0.3, 1, 3]) say(x(pga), height - bottom + 12, 'middle', `${pga}${pga === 3 ? ' g' : ''}`);

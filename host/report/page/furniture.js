@@ -12,7 +12,7 @@ const listedFurniture = 6;
 function mayBeFurniture(scene) {
   const pieces = scene.primitives.filter(part => (scene.objectById.get(part.object) || {}).grounded && scene.partBoxes.has(part.id))
     .map(part => ({part: part.id, box: scene.partBoxes.get(part.id)}));
-  const whole = scene.boxes.get(null), extent = ({low, high}, k) => high[k] - low[k], faces = [];
+  const whole = scene.boxes.get(null), extent = (box, k) => extentOf(box)[k], faces = [];
   for (const piece of pieces) {
     const {box} = piece, across = extent(box, 0) < extent(box, 1) ? 0 : 1, along = 1 - across;
     if (extent(box, 2) < 2 * furnitureDepth_m[0] || extent(box, across) > furnitureDepth_m[1]) continue;
@@ -34,7 +34,7 @@ function mayBeFurniture(scene) {
     else low[one.across] = one.front - wall;
     const inside = ({box}) => box.low.every((value, k) => value >= low[k] - margin && box.high[k] <= high[k] + margin);
     found.push({part: one.part, parts: pieces.filter(piece => piece.part === one.part || inside(piece)).map(piece => piece.part), box: {low, high},
-      size_m: low.map((value, k) => high[k] - value), face_m2: extent(one.box, one.along) * extent(one.box, 2)});
+      size_m: extentOf({low, high}), face_m2: extent(one.box, one.along) * extent(one.box, 2)});
   }
   found.sort((a, b) => b.face_m2 - a.face_m2 || a.part - b.part);
   // What lies within one that is listed is of that.
@@ -46,8 +46,6 @@ function listedPieces(scene) {
   if (!scene.furniture) scene.furniture = mayBeFurniture(scene).map((one, n) => ({...one, letter: n < listedFurniture ? String.fromCharCode(65 + n) : ''}));
   return scene.furniture;
 }
-
-const middleOf = box => box.low.map((value, k) => (value + box.high[k]) / 2);
 
 // "0.40 \u00d7 2.60 \u00d7 1.90 m, at 1.20 E, 3.00 N, 0.00 to 1.90 m high"
 function furnitureText(scene, {box, size_m: size}) {

@@ -10,11 +10,7 @@ function fillHeader(scene) {
   document.getElementById('summary').textContent =
     (scene.made ? `${scene.made}. ` : '') + `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the building with all that is fixed to it' : '') +
     '.';
-  if (scene.verified) {
-    const line = document.getElementById('verification');
-    line.textContent = verifiedText(scene.verified);
-    line.hidden = false;
-  }
+  sayIn('verification', scene.verified ? verifiedText(scene.verified) : '');
   const up = {
     given: 'given by the user', manhattan: 'from the room\u2019s three main directions',
     'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed', map: 'the map\'s z', format: 'by the file\'s format',
@@ -31,10 +27,7 @@ function fillHeader(scene) {
     ['seed', String(scene.seed)],
     ...eventFacts(scene),
   ];
-  const list = document.getElementById('facts');
-  for (const [name, value] of facts) {
-    list.append(element('div', {}, [element('dt', {text: name}), element('dd', {text: value})]));
-  }
+  document.getElementById('facts').append(...facts.map(([name, value]) => element('div', {}, [element('dt', {text: name}), element('dd', {text: value})])));
 }
 
 // What was reckoned with, as far as this run asked for it.
@@ -90,7 +83,7 @@ function legend(scene, state, view) {
   const bar = colours => element('div', {className: 'bar', style: {background: `linear-gradient(90deg, ${colours.map(css).join(',')})`}});
   const ends = (low, high) => element('div', {className: 'ends'}, [element('span', {text: low}), element('span', {text: high})]);
   if (state.mode === 'risk') {
-    const line = (category, text) => element('div', {}, [element('span', {className: 'swatch', style: {background: css(categoryColour(scene, category))}}), text]);
+    const line = (category, text) => element('div', {}, [colourSwatch(categoryColour(scene, category)), text]);
     box.append(element('div', {text: 'Category'}), ...[...categories].reverse().map(category => line(category, category)));
     const unknown = scene.objects.find(object => !object.grounded && !object.unsafety_category);
     if (unknown) box.append(line('', `not known: ${noCategoryText(unknown)}`));
@@ -98,10 +91,8 @@ function legend(scene, state, view) {
   if (state.fieldsOn.includes('walks')) {
     box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));
   }
-  const arrows = state.fieldsOn.filter(name => name !== 'walks');
-  for (const name of arrows) {
-    const strongest = view.fields[name].userData.strongest;
-    const {legend: text, scale, unit} = kindOf(name);
+  for (const name of state.fieldsOn.filter(field => field !== 'walks')) {
+    const {strongest} = view.fields[name].userData, {legend: text, scale, unit} = kindOf(name);
     box.append(element('div', {text: `Arrows: ${text}`}), bar(scene.ramp.colours), ends('0', number(scale * strongest, unit)));
   }
   for (const part of view.marker.parts()) {
@@ -114,15 +105,14 @@ function legend(scene, state, view) {
 // A box for each disturbance's arrows and for the floor that people walk on; one that has nothing to show says why.
 function fieldBoxes(scene, view, state) {
   const fields = document.getElementById('fields');
-  const entries = disturbanceNames().map(name => [name, `${capital(causeOf(name))}`, !!view.fields[name],
+  const entries = disturbanceNames().map(name => [name, capital(causeOf(name)), !!view.fields[name],
     scene.disturbances.includes(name) ? 'it reaches nothing here' : 'this run left it out']);
-  entries.push(['walks', 'Walked floor', view.walks.children.length > 0,
+  entries.push(['walks', 'Walked floor', !!view.fields.walks,
     scene.disturbances.includes('human') ? 'no floor was found that people could walk on' : 'this run left people out']);
   const missing = [];
   for (const [name, label, there, why] of entries) {
     const box = element('input', {type: 'checkbox', disabled: !there, onchange: () => {
-      if (name === 'walks') view.setWalks(box.checked);
-      else view.setField(name, box.checked);
+      view.setField(name, box.checked);
       state.fieldsOn = box.checked ? [...state.fieldsOn, name] : state.fieldsOn.filter(other => other !== name);
       legend(scene, state, view);
     }});
@@ -130,9 +120,7 @@ function fieldBoxes(scene, view, state) {
     fields.append(element('label', {className: there ? 'check' : 'check off', title: there ? '' : why}, [box, label.toLowerCase()]));
     if (!there) missing.push(`${label}: ${why}.`);
   }
-  const line = document.getElementById('missing');
-  line.textContent = missing.length ? 'Not shown: ' + missing.join(' ') : '';
-  line.hidden = !missing.length;
+  sayIn('missing', missing.length ? 'Not shown: ' + missing.join(' ') : '');
 }
 
 function sayThinned(scene) {
@@ -146,9 +134,7 @@ function sayThinned(scene) {
     parts.push(`${view.points.count.toLocaleString('en')} of ${plural(view.points.total, sampled ? 'sample' : 'scan point')} are drawn` +
       (sampled ? ', each of which stands for the scan\u2019s points around it.' : '.'));
   }
-  const line = document.getElementById('thinned');
-  line.textContent = parts.join(' ');
-  line.hidden = !parts.length;
+  sayIn('thinned', parts.join(' '));
 }
 
 function openView(scene) {
@@ -162,10 +148,9 @@ function openView(scene) {
 
 // A still picture in the view's place, from each of four sides.
 function showStill(scene) {
-  const message = document.getElementById('no-view'), drawn = scene.painter.draws;
-  message.textContent = 'The 3D view needs WebGL, which this browser doesn\u2019t offer here. ' +
-    (drawn ? 'Here is a picture instead; numbers are those of the riskiest objects.' : 'The table and the curves below work without it.');
-  message.hidden = false;
+  const drawn = scene.painter.draws;
+  sayIn('no-view', 'The 3D view needs WebGL, which this browser doesn\u2019t offer here. ' +
+    (drawn ? 'Here is a picture instead; numbers are those of the riskiest objects.' : 'The table and the curves below work without it.'));
   // What is about the view, which isn't there.
   for (const part of document.querySelectorAll('.toolbar, .stage .hint')) part.hidden = true;
   document.querySelector('.compass').style.display = 'none';
@@ -399,7 +384,5 @@ function chosenText(scene, object) {
 window.toppleReady = start();
 window.toppleReady.catch(error => {
   document.body.dataset.error = error.message;
-  const message = document.getElementById('no-view');
-  message.textContent = error.message;
-  message.hidden = false;
+  sayIn('no-view', error.message);
 });

@@ -26,10 +26,7 @@ function fieldMesh(scene, name, reach) {
   }
   const strongest = Float32Array.from(strength).sort()[Math.floor(0.95 * (field.count - 1))] || 1;
   for (let i = 0; i < field.count; ++i) strength[i] = Math.min(strength[i] / strongest, 1);
-  const geometry = new THREE.InstancedBufferGeometry();
-  const {corners, index} = arrowShape();
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
-  geometry.setIndex(index);
+  const geometry = shapeArrow(new THREE.InstancedBufferGeometry());
   geometry.setAttribute('offset', new THREE.InstancedBufferAttribute(offset, 3));
   geometry.setAttribute('direction', new THREE.InstancedBufferAttribute(direction, 3));
   geometry.setAttribute('strength', new THREE.InstancedBufferAttribute(strength, 1));
@@ -46,8 +43,8 @@ function fieldMesh(scene, name, reach) {
   return mesh;
 }
 
-// A shaft and a head with five sides, along z from 0 to 1, one unit thick at the head.
-function arrowShape() {
+// Makes the geometry a shaft and a head with five sides, along z from 0 to 1, one unit thick at the head.
+function shapeArrow(geometry) {
   const corners = [], index = [], sides = 5;
   const ring = (radius, z) => {
     for (let i = 0; i < sides; ++i) {
@@ -68,7 +65,9 @@ function arrowShape() {
   join(0, sides);
   join(sides, 2 * sides);
   join(2 * sides, 3 * sides);
-  return {corners, index};
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
+  geometry.setIndex(index);
+  return geometry;
 }
 
 // Fig. 9: the cells of the floor where people can walk, by how many do, and the ways of some.
@@ -148,10 +147,7 @@ class Marker {
   }
 
   addArrow(color) {
-    const geometry = new THREE.BufferGeometry(), {corners, index} = arrowShape();
-    geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
-    geometry.setIndex(index);
-    const mesh = this.add(geometry, color);
+    const mesh = this.add(shapeArrow(new THREE.BufferGeometry()), color);
     mesh.material.side = THREE.DoubleSide;
     return mesh;
   }
@@ -166,12 +162,7 @@ class Marker {
 
   // What of the marker is drawn, by the legend's names.
   parts() {
-    if (!this.group.visible) return [];
-    const parts = ['middle'];
-    if (this.edge.visible) parts.push('edge');
-    if (this.lands.visible) parts.push('lands');
-    if (this.move.visible) parts.push('move');
-    return parts;
+    return this.group.visible ? ['middle', ...['edge', 'lands', 'move'].filter(part => this[part].visible)] : [];
   }
 
   show(object, fromInput) {

@@ -110,7 +110,6 @@ function voxelSolids(view) {
   for (let i = 0; i < voxels.count; ++i) for (const face of shown) faces += voxels.aux[4 * i + 3] >> face & 1;
   const count = 4 * faces, cell = new Uint16Array(4 * count), aux = new Int8Array(4 * count), index = new Uint32Array(6 * faces);
   const photo = voxels.photo ? new Uint8Array(4 * count) : null, half = view.step_m.map(step => view.cube_m / 2 / step);
-  const corners = facePlaces();
   let to = 0, next = 0;
   for (let i = 0; i < 4 * voxels.count; i += 4) {
     for (const face of shown) {
@@ -118,7 +117,7 @@ function voxelSolids(view) {
       for (const corner of [0, 1, 2, 0, 2, 3]) index[next++] = to + corner;
       for (let corner = 0; corner < 4; ++corner, ++to) {
         for (let k = 0; k < 3; ++k) {
-          cell[4 * to + k] = Math.min(Math.max(voxels.cell[i + k] + corners[face][corner][k] * half[k], 0), 65535);
+          cell[4 * to + k] = Math.min(Math.max(voxels.cell[i + k] + faceCorners[face][corner][k] * half[k], 0), 65535);
           aux[4 * to + k] = voxels.aux[i + k];
         }
         cell[4 * to + 3] = voxels.cell[i + 3];
@@ -130,26 +129,20 @@ function voxelSolids(view) {
 }
 
 // The corners of a cube's faces, anticlockwise seen from outside, as -1 and 1 along each axis; in the order of the records' bits.
-function facePlaces() {
-  return [-1, 1, -1, 1, -1, 1].map((sign, face) => {
-    const axis = face >> 1, u = (axis + 1) % 3, v = (axis + 2) % 3;
-    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => {
-      const corner = [0, 0, 0];
-      corner[axis] = sign;
-      corner[u] = sign > 0 ? a : b;
-      corner[v] = sign > 0 ? b : a;
-      return corner;
-    });
-  });
-}
+const faceCorners = [-1, 1, -1, 1, -1, 1].map((sign, face) => [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => {
+  const corner = [], axis = face >> 1;
+  corner[axis] = sign;
+  corner[(axis + 1) % 3] = sign > 0 ? a : b;
+  corner[(axis + 2) % 3] = sign > 0 ? b : a;
+  return corner;
+}));
 
 // From above, as the view looks at first, turned by `turn` degrees; the box just fits.
 function paintersCamera(box, width, height, turn) {
   const angle = Math.atan2(0.75, 0.55) + turn * Math.PI / 180, level = Math.cos(0.588), slope = Math.sin(0.588);
   const ahead = [Math.cos(angle) * level, Math.sin(angle) * level, -slope];
   const right = [Math.sin(angle), -Math.cos(angle), 0], up = [slope * Math.cos(angle), slope * Math.sin(angle), level];
-  const middle = box.low.map((value, k) => (value + box.high[k]) / 2);
-  const radius = Math.max(Math.hypot(...box.low.map((value, k) => box.high[k] - value)) / 2, 0.05);
+  const middle = middleOf(box), radius = Math.max(Math.hypot(...extentOf(box)) / 2, 0.05);
   const camera = {eye: middle.map((value, k) => value - 3.2 * radius * ahead[k]), right, up, ahead, focal: 1, x0: 0, y0: 0};
   const xs = [], ys = [];
   for (let corner = 0; corner < 8; ++corner) {
@@ -212,15 +205,19 @@ function paintPictures(scene, now = false) {
   else setTimeout(() => paintPictures(scene), 15);
 }
 
+// The colours of groups: of what can move and of `also`, else the ground's. of(object): another one than its own.
+function byObject(scene, also, of = object => objectColour(scene, object.id)) {
+  return g => {
+    const object = scene.objectById.get(scene.view.groups[g][1]);
+    return !object || object.grounded && object.id !== also ? groundColour : of(object);
+  };
+}
+
 // As a data URL: the object in colour, what is around it pale.
 function objectPicture(scene, id) {
-  const {low, high} = scene.boxes.get(id), margin = Math.max(0.25 * Math.hypot(...low.map((value, k) => high[k] - value)), 0.02);
+  const {low, high} = scene.boxes.get(id), margin = Math.max(0.25 * Math.hypot(...extentOf({low, high})), 0.02);
   const box = {low: low.map(value => value - margin), high: high.map(value => value + margin)};
-  const colours = g => {
-    const object = scene.objectById.get(scene.view.groups[g][1]);
-    return !object || object.grounded && object.id !== id ? groundColour : objectColour(scene, object.id);
-  };
-  const {canvas} = scene.painter.picture(box, {...pictureSize, chosen: id, colourOf: colours, own: scene.coloured});
+  const {canvas} = scene.painter.picture(box, {...pictureSize, chosen: id, colourOf: byObject(scene, id), own: scene.coloured});
   const context = canvas.getContext('2d');
   context.globalCompositeOperation = 'destination-over';  // JPEG knows no transparency
   context.fillStyle = '#e9edf1';
@@ -231,13 +228,8 @@ function objectPicture(scene, id) {
 // The whole scene as a picture, with the numbers of the riskiest objects and the letters of what may be furniture; where there is no WebGL, and on paper.
 function paintScene(scene, canvas, mode, turn) {
   const {width, height} = canvas;
-  const colours = ([, id]) => {
-    const object = scene.objectById.get(id);
-    if (!object || object.grounded) return groundColour;
-    return mode === 'risk' ? categoryColour(scene, object.unsafety_category) : objectColour(scene, id);
-  };
-  const picture = scene.painter.picture(scene.boxes.get(null), {width, height, chosen: null,
-    colourOf: g => colours(scene.view.groups[g]), own: mode === 'photo', turn});
+  const colours = byObject(scene, null, mode === 'risk' ? object => categoryColour(scene, object.unsafety_category) : undefined);
+  const picture = scene.painter.picture(scene.boxes.get(null), {width, height, chosen: null, colourOf: colours, own: mode === 'photo', turn});
   const context = canvas.getContext('2d');
   context.clearRect(0, 0, width, height);
   context.drawImage(picture.canvas, 0, 0);

@@ -275,7 +275,7 @@ class PartsPanel {
     const other = this.owner.get(part.id) !== this.object;
     const box = element('input', {type: 'checkbox', value: part.id, checked: this.marked.has(part.id), onchange: () => this.togglePart(part.id)});
     return element('label', {className: 'check'}, [box,
-      element('span', {className: 'swatch', style: {background: css(colourOf(this.scene, part.id))}}),
+      colourSwatch(colourOf(this.scene, part.id)),
       element('span', {}, [`${part.name || `part ${part.id}`}${other ? ` of ${objectName(this.scene, part.object)}` : ''}, ${shapeText(part)}`,
         element('small', {className: 'place', text: placeInShort(this.scene, this.scene.partBoxes.get(part.id))})]),
       element('span', {className: 'pm', text: part.volume_m3 === null ? '' : number(part.volume_m3 * 1000, 'l')})]);

@@ -7,16 +7,25 @@ function viewPlace(scene, v) {
   return scene.view.view_from_input.map(row => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
 }
 
+const middleOf = ({low, high}) => low.map((value, k) => (value + high[k]) / 2);
+const extentOf = ({low, high}) => low.map((value, k) => high[k] - value);
+
 // The records that the solids are drawn from: their surface, else their voxels, else the scan.
 function drawnRecords(view) {
   return [view.surface, view.voxels].find(solids => solids.count) || view.points;
 }
 
-// The box of each object and of all of them (key null): {low, high}. Of all it is that of the records' 2nd to 98th
-// hundredths, since scans have strays.
-function boxesOf(scene) {
-  const {view} = scene, {cell, count} = drawnRecords(view), boxes = new Map();
-  const place = (values, k) => view.origin_m[k] + view.step_m[k] * values[k];
+// Widens a box by another one.
+function grow(box, other) {
+  for (let k = 0; k < 3; ++k) {
+    box.low[k] = Math.min(box.low[k], other.low[k]);
+    box.high[k] = Math.max(box.high[k], other.high[k]);
+  }
+}
+
+// The box of what is drawn, {low, high}, by the number of a group's part (which: 0) or object (1).
+function boxesBy(view, which) {
+  const {cell, count} = drawnRecords(view), boxes = new Map();
   const groups = view.groups.map(() => ({low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity]}));
   for (let i = 0; i < 4 * count; i += 4) {
     const {low, high} = groups[cell[i + 3]];
@@ -25,40 +34,31 @@ function boxesOf(scene) {
       if (cell[i + k] > high[k]) high[k] = cell[i + k];
     }
   }
-  view.groups.forEach(([, object], g) => {
-    const {low, high} = groups[g];
+  const place = (value, k) => view.origin_m[k] + view.step_m[k] * value;
+  groups.forEach(({low, high}, g) => {
     if (!(low[0] <= high[0])) return;
-    const from = low.map((value, k) => place(low, k)), to = high.map((value, k) => place(high, k));
-    const box = boxes.get(object);
-    if (!box) boxes.set(object, {low: from, high: to});
-    else for (let k = 0; k < 3; ++k) { box.low[k] = Math.min(box.low[k], from[k]); box.high[k] = Math.max(box.high[k], to[k]); }
+    const key = view.groups[g][which], box = {low: low.map(place), high: high.map(place)};
+    if (boxes.has(key)) grow(boxes.get(key), box);
+    else boxes.set(key, box);
   });
-  boxes.set(null, wholeBox(view));
   return boxes;
 }
 
-// The box of each part that is drawn, by its number.
+// Of each object and of all of them (key null): of all it is that of the records' 2nd to 98th hundredths, since scans have strays.
+function boxesOf(scene) {
+  return boxesBy(scene.view, 1).set(null, wholeBox(scene.view));
+}
+
+// Of each part.
 function partBoxesOf(scene) {
-  const {view} = scene, {cell, count} = drawnRecords(view), boxes = new Map(), parts = view.groups.map(([part]) => part);
-  for (let i = 0; i < 4 * count; i += 4) {
-    const part = parts[cell[i + 3]];
-    if (!boxes.has(part)) boxes.set(part, {low: [65535, 65535, 65535], high: [0, 0, 0]});
-    const {low, high} = boxes.get(part);
-    for (let k = 0; k < 3; ++k) {
-      if (cell[i + k] < low[k]) low[k] = cell[i + k];
-      if (cell[i + k] > high[k]) high[k] = cell[i + k];
-    }
-  }
-  for (const {low, high} of boxes.values()) for (const ends of [low, high]) ends.forEach((value, k) => { ends[k] = view.origin_m[k] + view.step_m[k] * value; });
-  return boxes;
+  return boxesBy(scene.view, 0);
 }
 
 // The box that the plan shows: of all, and no object that can move, nor what may be furniture, lies outside.
 function planBoxOf(scene) {
   const {low, high} = scene.boxes.get(null), out = {low: [...low], high: [...high]};
-  for (const box of [...scene.objects.map(object => object.grounded ? null : scene.boxes.get(object.id)), ...listedPieces(scene).filter(one => one.letter).map(one => one.box)]) {
-    for (let k = 0; box && k < 3; ++k) { out.low[k] = Math.min(out.low[k], box.low[k]); out.high[k] = Math.max(out.high[k], box.high[k]); }
-  }
+  for (const object of scene.objects) if (!object.grounded && scene.boxes.has(object.id)) grow(out, scene.boxes.get(object.id));
+  for (const one of listedPieces(scene)) if (one.letter) grow(out, one.box);
   return out;
 }
 
@@ -141,8 +141,7 @@ function placeCell(scene, object) {
 function keepClear(scene, object) {
   if (object.grounded || !fallKnown(object) || (scene.objectById.get(object.fall.leans_on) || {}).grounded) return null;
   const from = viewPlace(scene, object.center_of_mass_m.map(value => value || 0)), to = viewPlace(scene, object.fall.lands_m);
-  const box = scene.boxes.get(object.id), size = object.size_m && object.size_m.every(value => value > 0) ? object.size_m
-    : box ? box.high.map((value, k) => value - box.low[k]) : null;
+  const box = scene.boxes.get(object.id), size = object.size_m && object.size_m.every(value => value > 0) ? object.size_m : box && extentOf(box);
   if (!size) return null;
   return Math.hypot(to[0] - from[0], to[1] - from[1]) + Math.max(...size) / 2;
 }
@@ -150,6 +149,6 @@ function keepClear(scene, object) {
 function keepClearText(scene, object) {
   const distance = keepClear(scene, object);
   if (distance === null) return '';
-  const way = wayOf(scene, object.fall.lands_m.map((value, k) => value - (object.center_of_mass_m[k] || 0)));
-  return `Keep ${metres(Math.ceil(distance * 10) / 10)} clear${way ? ` to the ${way}` : ''}, measured from its middle: that far it reaches when it lands${object.fall.leans_on >= 0 ? ', should what stops it give way' : ''}.`;
+  const way = fallsTo(scene, object);
+  return `Keep ${metres(Math.ceil(distance * 10) / 10)} clear${way}, measured from its middle: that far it reaches when it lands${object.fall.leans_on >= 0 ? ', should what stops it give way' : ''}.`;
 }

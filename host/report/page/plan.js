@@ -34,7 +34,7 @@ class Plan {
     const x = east => left + scale * east, y = north => top + deep - scale * north;
     const picture = this.picture(Math.round(2 * wide), Math.round(2 * deep));
     if (picture) svg.append(svgElement('image', {href: picture, x: left, y: top, width: wide, height: deep, preserveAspectRatio: 'none'}));
-    const say = (px, py, anchor, text, style = '') => svg.append(svgElement('text', {x: px, y: py, 'text-anchor': anchor, class: style}, text));
+    const say = svgTexts(svg);
     const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find(metre => Math.max(across, along) / metre <= 10) || 200;
     const digits = step < 1 ? 1 : 0;
     for (let east = 0; east <= across + 1e-9; east += step) {
@@ -79,11 +79,7 @@ class Plan {
   // As a data URL; null where there are no solids to draw.
   picture(width, height) {
     const {scene} = this, camera = (box, fineWidth, fineHeight) => planCamera(scene.planBox, fineWidth, fineHeight);
-    const colours = g => {
-      const object = scene.objectById.get(scene.view.groups[g][1]);
-      return !object || object.grounded ? groundColour : objectColour(scene, object.id);
-    };
-    const made = scene.painter.picture(scene.planBox, {width, height, chosen: null, colourOf: colours, own: scene.coloured, camera});
+    const made = scene.painter.picture(scene.planBox, {width, height, chosen: null, colourOf: byObject(scene, null), own: scene.coloured, camera});
     return made && made.canvas.toDataURL('image/png');
   }
 }
@@ -102,7 +98,7 @@ function steppedAside(placed, at, wide, tall) {
 
 // Straight down, and from so far that nothing leans.
 function planCamera(box, width, height) {
-  const middle = box.low.map((value, k) => (value + box.high[k]) / 2), size = box.low.map((value, k) => Math.max(box.high[k] - value, 1e-3));
+  const middle = middleOf(box), size = extentOf(box).map(side => Math.max(side, 1e-3));
   const far = 100 * Math.max(...size);
   return {eye: [middle[0], middle[1], middle[2] + far], right: [1, 0, 0], up: [0, 1, 0], ahead: [0, 0, -1],
     focal: far * width / size[0], x0: width / 2, y0: height / 2};

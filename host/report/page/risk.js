@@ -195,20 +195,20 @@ function pieceButtons(scene, object, on) {
     element('button', {type: 'button', className: 'link', text: `show ${name}`, 'data-show': other, onclick: () => on.show(object.id, other)})])];
 }
 
+// A paragraph, where there is a text.
+function paragraph(className, text) {
+  return text ? [element('p', {className, text})] : [];
+}
+
 function fillRisk(panel, scene, on) {
   const worst = riskiest(scene), doubtful = doubtfulOnes(scene);
   const movable = scene.objects.filter(object => !object.grounded).length;
-  panel.append(element('h2', {text: 'What is at risk, and what to do'}));
-  for (const note of scene.notes.filter(text => /left out, as for/.test(text))) panel.append(element('p', {className: 'hint', text: note}));
-  const coarse = coarseText(scene), missing = missingText(scene);
-  if (coarse) panel.append(element('p', {className: 'warning', text: coarse}));
-  if (missing) panel.append(element('p', {className: 'warning', text: missing}));
-  if (!worst.length) {
-    panel.append(element('p', {className: 'hint', text: nothingJudged(scene) ? 'Nothing was judged: the first line of this page says why.'
-      : `None of the disturbances puts ${doubtful.length ? 'any other' : 'an'} object at risk.`}));
-  } else {
-    fillRiskiest(panel, scene, worst, movable, on);
-  }
+  panel.append(element('h2', {text: 'What is at risk, and what to do'}),
+    ...scene.notes.filter(text => /left out, as for/.test(text)).flatMap(note => paragraph('hint', note)),
+    ...[coarseText(scene), missingText(scene)].flatMap(text => paragraph('warning', text)));
+  if (worst.length) fillRiskiest(panel, scene, worst, movable, on);
+  else panel.append(...paragraph('hint', nothingJudged(scene) ? 'Nothing was judged: the first line of this page says why.'
+    : `None of the disturbances puts ${doubtful.length ? 'any other' : 'an'} object at risk.`));
   fillLooks(panel, scene, doubtful, on);
 }
 
@@ -220,13 +220,13 @@ function fillLooks(panel, scene, doubtful, on) {
       (objects.length > most + 12 ? `, and ${objects.length - most - 12} more` : '') + '.'})] : []);
   if (doubtful.length || nearly.length) panel.append(element('h3', {text: 'To be looked at'}));
   if (doubtful.length) {
-    panel.append(element('p', {className: 'hint', text:
-      `Of ${plural(doubtful.length, 'more object')} at risk the scan hardly shows what holds ${doubtful.length === 1 ? 'it' : 'them'}, or ` +
-      `${doubtful.length === 1 ? 'it stands' : 'they stand'} on edge: the least push that upsets ${doubtful.length === 1 ? 'it' : 'them'} can\u2019t be told from nothing.`}));
+    const [them, stand] = doubtful.length === 1 ? ['it', 'it stands'] : ['them', 'they stand'];
+    panel.append(...paragraph('hint', `Of ${plural(doubtful.length, 'more object')} at risk the scan hardly shows what holds ${them}, or ` +
+      `${stand} on edge: the least push that upsets ${them} can\u2019t be told from nothing.`));
     cards(doubtful, listedDoubts);
   }
   if (nearly.length) {
-    panel.append(element('p', {className: 'hint', text: `${doubtful.length ? 'And ' : ''}${plural(nearly.length, 'object')} that nothing upsets as measured, but might:`}));
+    panel.append(...paragraph('hint', `${doubtful.length ? 'And ' : ''}${plural(nearly.length, 'object')} that nothing upsets as measured, but might:`));
     cards(nearly, listedDoubts);
   }
   const tall = tallOnes(scene);
@@ -275,13 +275,9 @@ function fillRiskiest(panel, scene, worst, movable, on) {
     'to matter. \u00b1 is one standard error. \u201cIf solid\u201d: the mass is that of its whole volume, at ' +
     `${number(scene.density_kg_m3, 'kg/m\u00b3')}, about that of wood; what is hollow is lighter. Straps must hold what is said at least: no safety margin is in it. `}, [term('advice', 'Advice'), ' (\u2192) is what brings the risk below the tolerated one; where it is not to ' +
     'move the thing, no safer place was found within 1.5 m on what carries it, or it is not one of the 16 of the largest risk, for which one is looked for.'])]));
-  if (worst.every(object => object.unsafety_category === 'none' && !(object.advice && object.advice.kind))) {
-    panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));
-  }
-  const list = element('div', {className: 'items'}, worst.map(object => riskCard(scene, object, on)));
-  panel.append(list);
-  if (worst.length > listedOnPhones) {
-    panel.append(element('button', {type: 'button', className: 'more', text: `show ${worst.length - listedOnPhones} more`,
-      onclick: () => panel.classList.add('all')}));
-  }
+  const tolerated = worst.every(object => object.unsafety_category === 'none' && !(object.advice && object.advice.kind));
+  panel.append(...paragraph('hint', tolerated ? 'All of these risks are tolerated: nothing needs to be done.' : ''),
+    element('div', {className: 'items'}, worst.map(object => riskCard(scene, object, on))),
+    ...worst.length > listedOnPhones ? [element('button', {type: 'button', className: 'more', text: `show ${worst.length - listedOnPhones} more`,
+      onclick: () => panel.classList.add('all')})] : []);
 }

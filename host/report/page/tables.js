@@ -262,10 +262,8 @@ function primitiveList(scene, object) {
   const list = element('dl', {className: 'numbers'});
   const parts = scene.primitives.filter(p => p.object === object.id).sort((a, b) => b.volume_m3 - a.volume_m3);
   for (const part of parts.slice(0, 12)) {
-    list.append(element('dt', {}, [
-      element('span', {className: 'swatch', style: {background: css(colourOf(scene, part.id))}}),
-      `part ${part.id}, ${shapeText(part)}`]),
-    element('dd', {text: part.volume_m3 === null ? '\u2013' : number(part.volume_m3 * 1000, 'l')}));
+    list.append(element('dt', {}, [colourSwatch(colourOf(scene, part.id)), `part ${part.id}, ${shapeText(part)}`]),
+      element('dd', {text: part.volume_m3 === null ? '\u2013' : number(part.volume_m3 * 1000, 'l')}));
   }
   if (parts.length > 12) list.append(element('dt', {text: `and ${parts.length - 12} more`}), element('dd'));
   return list;

@@ -4,7 +4,17 @@
 // Of parts that were chosen to be put right.
 const markColour = [255, 128, 20];
 
-const faceNormals = [[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]];
+// Of vertices {cell, aux, photo}, with the corners of triangles where there are any.
+function recordGeometry({cell, aux, photo}, index) {
+  const geometry = new THREE.BufferGeometry();
+  // three.js knows geometry, and counts its vertices, by `position`, which the shader does not read.
+  geometry.setAttribute('position', new THREE.BufferAttribute(cell, 4));
+  geometry.setAttribute('cell', new THREE.BufferAttribute(cell, 4));
+  geometry.setAttribute('aux', new THREE.BufferAttribute(aux, 4));
+  if (photo) geometry.setAttribute('photo', new THREE.BufferAttribute(photo, 4, true));
+  if (index) geometry.setIndex(new THREE.BufferAttribute(index, 1));
+  return geometry;
+}
 
 // The 3D view. Throws where there is no WebGL. Draws only when something changed.
 class View {
@@ -110,14 +120,7 @@ class View {
 
   makeSurface() {
     const {surface} = this.scene.view;
-    const geometry = new THREE.BufferGeometry();
-    // three.js knows geometry by `position`, which the shader does not read.
-    geometry.setAttribute('position', new THREE.BufferAttribute(surface.cell, 4));
-    geometry.setAttribute('cell', new THREE.BufferAttribute(surface.cell, 4));
-    geometry.setAttribute('aux', new THREE.BufferAttribute(surface.aux, 4));
-    if (surface.photo) geometry.setAttribute('photo', new THREE.BufferAttribute(surface.photo, 4, true));
-    geometry.setIndex(new THREE.BufferAttribute(surface.index, 1));
-    const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
+    const mesh = new THREE.Mesh(recordGeometry(surface, surface.index), new THREE.ShaderMaterial({
       uniforms: this.uniforms, vertexShader: surfaceVertexShader, fragmentShader: surfaceFragmentShader,
     }));
     mesh.frustumCulled = false;
@@ -131,7 +134,7 @@ class View {
     const {voxels} = this.scene.view;
     const fromCell = new Uint32Array(voxels.cell.buffer), fromAux = new Uint32Array(voxels.aux.buffer);
     const fromPhoto = voxels.photo && new Uint32Array(voxels.photo.buffer);
-    faceNormals.forEach((normal, face) => {
+    faceCorners.forEach((corners, face) => {
       let count = 0;
       for (let i = 0; i < voxels.count; ++i) count += voxels.aux[4 * i + 3] >> face & 1;
       if (!count) return;
@@ -151,15 +154,9 @@ class View {
           if (fromPhoto) toPhoto[to] = fromPhoto[i];
         }
       }
-      const geometry = new THREE.BufferGeometry();
-      // three.js knows geometry by `position`, which the shader does not read.
-      geometry.setAttribute('position', new THREE.BufferAttribute(cell, 4));
-      geometry.setAttribute('cell', new THREE.BufferAttribute(cell, 4));
-      geometry.setAttribute('aux', new THREE.BufferAttribute(aux, 4));
-      if (fromPhoto) geometry.setAttribute('photo', new THREE.BufferAttribute(new Uint8Array(toPhoto.buffer), 4, true));
-      geometry.setIndex(new THREE.BufferAttribute(index, 1));
-      const uniforms = {faceNormal: {value: new THREE.Vector3(...normal)}, corners: {value: faceCorners(normal)}};
-      const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
+      const photo = fromPhoto && new Uint8Array(toPhoto.buffer), places = corners.map(corner => new THREE.Vector3(...corner).multiplyScalar(0.5));
+      const uniforms = {faceNormal: {value: places[0].clone().add(places[2])}, corners: {value: places}};
+      const mesh = new THREE.Mesh(recordGeometry({cell, aux, photo}, index), new THREE.ShaderMaterial({
         uniforms: Object.assign(uniforms, this.uniforms),
         vertexShader: voxelVertexShader, fragmentShader: recordFragmentShader,
       }));
@@ -182,16 +179,9 @@ class View {
 
   makePoints() {
     const {points} = this.scene.view;
-    const geometry = new THREE.BufferGeometry();
-    // three.js counts the vertices by `position`, which the shader does not read.
-    geometry.setAttribute('position', new THREE.BufferAttribute(points.cell, 4));
-    geometry.setAttribute('cell', new THREE.BufferAttribute(points.cell, 4));
-    geometry.setAttribute('aux', new THREE.BufferAttribute(points.aux, 4));
-    if (points.photo) geometry.setAttribute('photo', new THREE.BufferAttribute(points.photo, 4, true));
-    const material = new THREE.ShaderMaterial({
+    this.points = new THREE.Points(recordGeometry(points), new THREE.ShaderMaterial({
       uniforms: this.uniforms, vertexShader: pointVertexShader, fragmentShader: recordFragmentShader,
-    });
-    this.points = new THREE.Points(geometry, material);
+    }));
     this.points.frustumCulled = false;
     this.points.visible = false;
     this.world.add(this.points);
@@ -206,10 +196,11 @@ class View {
     for (const name of Object.keys(this.scene.view.fields)) {
       if (this.scene.view.fields[name].count) this.fields[name] = fieldMesh(this.scene, name, this.reach);
     }
-    this.walks = walksGroup(this.scene, this.reach);
+    const walks = walksGroup(this.scene, this.reach);
+    if (walks.children.length) this.fields.walks = walks;
     this.marker = new Marker(this.reach);
     this.labels = new Labels(this.container, this.scene);
-    for (const overlay of [...Object.values(this.fields), this.walks, this.marker.group]) {
+    for (const overlay of [...Object.values(this.fields), this.marker.group]) {
       overlay.visible = false;
       this.world.add(overlay);
     }
@@ -222,8 +213,7 @@ class View {
   }
 
   fromInput(v) {
-    const rows = this.scene.view.view_from_input;
-    return new THREE.Vector3(...rows.map(row => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]));
+    return new THREE.Vector3(...viewPlace(this.scene, v));
   }
 
   // --- the camera ---------------------------------------------------------------------------------
@@ -233,14 +223,8 @@ class View {
     const direction = new THREE.Vector3(-0.55, -0.75, 0.62).normalize();
     const right = new THREE.Vector3(0, 0, 1).cross(direction).normalize(), up = new THREE.Vector3().crossVectors(direction, right);
     // The nearest upper corner belongs to walls and a ceiling that are looked through.
-    const {min, max} = this.box, corners = [];
-    for (const x of [min.x, max.x]) {
-      for (const y of [min.y, max.y]) {
-        for (const z of [min.z, max.z]) {
-          if (x !== min.x || y !== min.y || z !== max.z) corners.push(new THREE.Vector3(x, y, z));
-        }
-      }
-    }
+    const {min, max} = this.box, all = [min.x, max.x].flatMap(x => [min.y, max.y].flatMap(y => [min.z, max.z].map(z => new THREE.Vector3(x, y, z))));
+    const corners = all.filter(({x, y, z}) => x !== min.x || y !== min.y || z !== max.z);
     const tall = 0.94 * Math.tan(this.camera.fov * Math.PI / 360), wide = tall * this.camera.aspect;
     const target = this.box.getCenter(new THREE.Vector3());
     let distance = this.reach;
@@ -322,12 +306,7 @@ class View {
   }
 
   setField(name, visible) {
-    if (this.fields[name]) this.fields[name].visible = visible;
-    this.redraw();
-  }
-
-  setWalks(visible) {
-    this.walks.visible = visible;
+    this.fields[name].visible = visible;
     this.redraw();
   }
 
@@ -367,7 +346,7 @@ class View {
   drawGroups() {
     const {width, height} = this.renderer.domElement;
     this.ids.setSize(Math.max(width >> 1, 1), Math.max(height >> 1, 1));
-    const shown = [this.marker.group, this.walks, ...Object.values(this.fields)].filter(thing => thing.visible);
+    const shown = [this.marker.group, ...Object.values(this.fields)].filter(thing => thing.visible);
     for (const thing of shown) thing.visible = false;
     this.uniforms.picking.value = 1;
     this.renderer.setRenderTarget(this.ids);
@@ -442,16 +421,4 @@ function drawsInSoftware() {
   const lose = gl && gl.getExtension('WEBGL_lose_context');
   if (lose) lose.loseContext();
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
-}
-
-// The corners of a unit cube's face, anticlockwise seen from outside.
-function faceCorners(normal) {
-  const n = new THREE.Vector3(...normal);
-  const side = new THREE.Vector3(Math.abs(n.z), Math.abs(n.x), Math.abs(n.y));
-  const up = new THREE.Vector3().crossVectors(n, side);
-  const corners = [];
-  for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
-    corners.push(n.clone().addScaledVector(side, a).addScaledVector(up, b).multiplyScalar(0.5));
-  }
-  return corners;
 }

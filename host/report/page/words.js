@@ -155,8 +155,14 @@ function compassOf(degrees) {
 
 // Which way a vector of the input's frame points, seen from above; '' for no way.
 function wayOf(scene, vector) {
-  const [x, y] = scene.view.view_from_input.map(row => row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2]);
+  const [x, y] = viewPlace(scene, vector);
   return Math.hypot(x, y) > 1e-3 ? compassOf(Math.atan2(x, y) * 180 / Math.PI) : '';
+}
+
+// " to the north", as it falls; '' for no way.
+function fallsTo(scene, object) {
+  const way = wayOf(scene, object.fall.lands_m.map((value, k) => value - (object.center_of_mass_m[k] || 0)));
+  return way ? ` to the ${way}` : '';
 }
 
 function landsText(scene, fall) {
@@ -185,9 +191,7 @@ function hitsText(object) {
 // What happens then. Why it stands as it does where nothing is known of its fall.
 function happensText(scene, object) {
   if (!fallKnown(object)) return object.why.sentence;
-  const fall = object.fall;
-  const way = wayOf(scene, fall.lands_m.map((value, k) => value - (object.center_of_mass_m[k] || 0)));
-  const to = way ? ` to the ${way}` : '';
+  const fall = object.fall, to = fallsTo(scene, object);
   const flat = object.mode === 'tip' && !(fall.leans_on >= 0) && !(fall.drop_m > 0);
   const verb = flat ? `It falls flat${to}` : object.mode === 'tip' ? `It tips over${to}` : object.mode === 'slide' ? `It slides off${to}` : `It comes down${to}`;
   const goes = fall.takes_along.length, end = goes ? ` and takes ${objectList(fall.takes_along)} along.` : '.';

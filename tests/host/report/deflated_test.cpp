@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "report/deflated.h"
-
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -9,6 +7,8 @@
 #include <limits>
 #include <string>
 #include <vector>
+
+#include "report/embedded.h"
 
 namespace topple::report {
 namespace {

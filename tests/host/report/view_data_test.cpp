@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "report/base64.h"
+#include "report/embedded.h"
 #include "report/surface_packer.h"
 #include "synthetic_scene.h"
 
@@ -418,7 +418,7 @@ TEST(ViewData, surfaces_may_have_many_vertices) {
     const auto group = [](std::int32_t) { return std::uint16_t{1}; };
     packer.add(fan, group);
     const auto vertex = [](const ObjectSurface&, std::size_t v, std::uint16_t g) {
-        SurfaceVertex out;
+        Record out;
         out.cell = {static_cast<std::uint16_t>(v & 65535), static_cast<std::uint16_t>(v >> 16), 0,
                     g};
         return out;
