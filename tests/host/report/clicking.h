@@ -8,7 +8,7 @@ namespace topple::test {
 // In the page: a click of the pointer where `wanted(part, object)` is seen, with the keys that are
 // held; each is counted.
 inline const std::string clicking = R"(
-    const out = document.body.dataset, canvas = toppleView.renderer.domElement, box = canvas.getBoundingClientRect();
+    const canvas = toppleView.renderer.domElement, box = canvas.getBoundingClientRect();
     let clicks = 0;
     const seen = wanted => {
         for (let x = 3; x < box.width; x += 4) for (let y = 3; y < box.height; y += 4) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <stdlib.h>
 
 #include <cstdlib>
@@ -9,8 +9,23 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
+
+#include "report/report.h"
+
+namespace topple {
+using ::testing::HasSubstr, ::testing::Not;
+}
 
 namespace topple::test {
+
+// An attribute's text as it was before it was written into the page.
+inline std::string text(std::string attribute) {
+    const std::string space = "&nbsp;";
+    for (auto at = attribute.find(space); at != std::string::npos; at = attribute.find(space))
+        attribute.replace(at, space.size(), "\u00a0");
+    return attribute;
+}
 
 class InBrowser : public ::testing::Test {
   protected:
@@ -23,15 +38,24 @@ class InBrowser : public ::testing::Test {
         std::filesystem::remove_all(folder_, error);
     }
 
+    // A browser that is missing skips a test by name, and fails it where everything must run.
+    void SetUp() override {
+        if (std::system("command -v chromium > /dev/null 2>&1") == 0) return;
+        const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");
+        if (required && std::string(required) == "1") FAIL() << "chromium is missing";
+        GTEST_SKIP() << "chromium is missing: apt-get install chromium";
+    }
+
     std::string read(const std::filesystem::path& file) const {
         std::ostringstream out;
         out << std::ifstream(file, std::ios::binary).rdbuf();
         return out.str();
     }
 
-    // Opens the page in a headless browser, runs `script` once the page is ready, and returns the
-    // page as it then stands and what the browser logged. The script may await. `flags`: more for
-    // the browser; `link`: what follows the page's address.
+    // Opens the page in a headless browser, runs `script` once the page is ready, to its end and
+    // without an error, and returns the page as it then stands and what the browser logged. The
+    // script may await. By is(found, expected, why) it says what must be so, and in `out` what else
+    // it found. `flags`: more for the browser; `link`: what follows the page's address.
     struct Opened {
         std::string dom, log;
         std::string data(const std::string& name) const {
@@ -42,12 +66,30 @@ class InBrowser : public ::testing::Test {
                 return "(none)";
             return dom.substr(at + key.size(), dom.find('"', at + key.size()) - at - key.size());
         }
+        // The data hold all of these.
+        void says(const std::string& name, const std::vector<std::string>& parts) const {
+            for (const std::string& part : parts)
+                EXPECT_THAT(text(data(name)), HasSubstr(part)) << name;
+        }
     };
     Opened open(const std::filesystem::path& page, const std::string& script = "",
                 const std::string& flags = "", const std::string& link = "") {
-        return shown(
-            read(page) + "<script>toppleReady.then(async () => {" + script + "});</script>", flags,
-            link);
+        const Opened opened = shown(read(page) + R"(<script>{
+            const out = document.body.dataset, faults = [], is = (found, expected, why = '') => {
+                if (String(found) !== String(expected)) faults.push(`${found}, not ${expected} ${why}`);
+            };
+            toppleReady.then(async () => {)" +
+                                        script + R"(}).then(() => {
+                out.faults = faults.join('; ');
+                out.done = '1';
+            });
+        }</script>)",
+                                    flags, link);
+        EXPECT_EQ(opened.data("ready"), "1") << opened.log.substr(0, 2000);
+        EXPECT_EQ(opened.data("done"), "1") << "the script has no end";
+        EXPECT_EQ(opened.data("error"), "(none)");
+        EXPECT_EQ(opened.data("faults"), "");
+        return opened;
     }
     // The same in a window as small as a phone's, which the browser's own can't be: within a frame.
     // `script` says what it found in `out`.
@@ -70,6 +112,12 @@ class InBrowser : public ::testing::Test {
             "<!DOCTYPE html><body><iframe width=390 height=844 style='border:0' srcdoc=\"" +
             escaped + "\"></iframe></body>");
     }
+    // Of a scene's report.
+    Opened open(const Scene& scene, const std::string& script, const std::string& flags = "",
+                const std::string& link = "") {
+        report::write_report(folder_ / "report.html", scene);
+        return open(folder_ / "report.html", script, flags, link);
+    }
     Opened shown(const std::string& html, const std::string& flags = "",
                  const std::string& link = "") {
         const auto file = folder_ / "shown.html";
@@ -82,30 +130,12 @@ class InBrowser : public ::testing::Test {
             " --virtual-time-budget=10000 --dump-dom 'file://" + file.string() + link + "' > '" +
             (folder_ / "dom").string() + "' 2> '" + (folder_ / "log").string() + "'";
         EXPECT_EQ(std::system(command.c_str()), 0);
-        return {read(folder_ / "dom"), read(folder_ / "log")};
+        Opened opened{read(folder_ / "dom"), read(folder_ / "log")};
+        EXPECT_THAT(opened.log, Not(HasSubstr("Uncaught")));
+        return opened;
     }
 
     std::filesystem::path folder_;
 };
-
-// An attribute's text as it was before it was written into the page.
-inline std::string text(std::string attribute) {
-    const std::string space = "&nbsp;";
-    for (auto at = attribute.find(space); at != std::string::npos; at = attribute.find(space))
-        attribute.replace(at, space.size(), "\u00a0");
-    return attribute;
-}
-
-inline bool no_browser() {
-    return std::system("command -v chromium > /dev/null 2>&1") != 0;
-}
-
-// A browser that is missing skips a test by name, and fails it where everything must run.
-#define NEEDS_BROWSER()                                                                \
-    if (topple::test::no_browser()) {                                                  \
-        const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");                 \
-        if (required && std::string(required) == "1") FAIL() << "chromium is missing"; \
-        GTEST_SKIP() << "chromium is missing: apt-get install chromium";               \
-    }
 
 }  // namespace topple::test
