@@ -5,11 +5,9 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/isolate_option.h"
 #include "cli/long_run.h"
-#include "cli/max_memory_option.h"
 #include "cli/print.h"
-#include "cli/unit_option.h"
+#include "cli/shared_options.h"
 #include "core/json.h"
 #include "io/text.h"
 #include "points/budget.h"

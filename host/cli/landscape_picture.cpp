@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vectors.h"
 #include "report/canvas.h"
 #include "report/drawing.h"
 
@@ -26,21 +27,11 @@ struct Paint {
     double width;
 };
 Paint paint_of(Drawing::Style style) {
-    switch (style) {
-        case Drawing::Style::axis:
-            return {{0.67, 0.7, 0.73}, white, 1};
-        case Drawing::Style::curve:
-            return {accent, white, 2};
-        case Drawing::Style::border:
-            return {ink, white, 1};
-        case Drawing::Style::pass:
-        case Drawing::Style::pose:
-            return {ink, white, 1};
-        case Drawing::Style::lowest:
-            return {{0.79, 0.17, 0.17}, {1, 0.82, 0.24}, 2};
-        case Drawing::Style::now:
-            return {accent, {1, 0.95, 0.84}, 2};
-    }
+    using enum Drawing::Style;
+    if (style == axis) return {{0.67, 0.7, 0.73}, white, 1};
+    if (style == curve) return {accent, white, 2};
+    if (style == lowest) return {{0.79, 0.17, 0.17}, {1, 0.82, 0.24}, 2};
+    if (style == now) return {accent, {1, 0.95, 0.84}, 2};
     return {ink, white, 1};
 }
 
@@ -84,41 +75,38 @@ class Painter {
   private:
     Point place(const Point& p) const { return {x_ + scale * p[0], y_ + scale * p[1]}; }
 
-    void paint_sphere(const Drawing::Sphere& s) {
-        const int side = static_cast<int>(2 * scale * s.radius);
+    // A square of pixels; colour(row, column, side) of each.
+    template <class ColourOf>
+    void paint_square(const Point& corner, double size, const ColourOf& colour) {
+        const int side = static_cast<int>(scale * size);
         report::Raster raster(side, side, white);
-        for (int row = 0; row < side; ++row) {
-            for (int column = 0; column < side; ++column) {
-                const Point at{(column + 0.5) / side * 2 - 1, (row + 0.5) / side * 2 - 1};
-                if (at[0] * at[0] + at[1] * at[1] > 1) continue;
-                const Vec3 d = report::direction_at(at);
-                double height = -1e300;
-                for (const Vec3& v : s.corners)
-                    height = std::max(height, -(v[0] * d[0] + v[1] * d[1] + v[2] * d[2]));
-                const double share =
-                    (height - s.lowest_m) / std::max(s.highest_m - s.lowest_m, 1e-9);
-                const double band =
-                    std::clamp(std::floor(share * report::bands), 0.0, report::bands - 1.0);
-                raster.at(column, row) =
-                    report::colour(report::ramp_colour((band + 0.5) / report::bands));
-            }
-        }
-        const Point corner = place({s.middle[0] - s.radius, s.middle[1] - s.radius});
-        canvas_.image(corner[0], corner[1], raster);
+        for (int row = 0; row < side; ++row)
+            for (int column = 0; column < side; ++column)
+                raster.at(column, row) = colour(row, column, side);
+        const Point at = place(corner);
+        canvas_.image(at[0], at[1], raster);
+    }
+
+    void paint_sphere(const Drawing::Sphere& s) {
+        const auto colour = [&](int row, int column, int side) {
+            const Point at{(column + 0.5) / side * 2 - 1, (row + 0.5) / side * 2 - 1};
+            if (at[0] * at[0] + at[1] * at[1] > 1) return white;
+            const Vec3 d = report::direction_at(at);
+            double height = -1e300;
+            for (const Vec3& v : s.corners) height = std::max(height, -dot(v, d));
+            const double share = (height - s.lowest_m) / std::max(s.highest_m - s.lowest_m, 1e-9);
+            const double band =
+                std::clamp(std::floor(share * report::bands), 0.0, report::bands - 1.0);
+            return report::colour(report::ramp_colour((band + 0.5) / report::bands));
+        };
+        paint_square({s.middle[0] - s.radius, s.middle[1] - s.radius}, 2 * s.radius, colour);
     }
 
     void paint_raster(const Drawing::Raster& r) {
-        const int side = static_cast<int>(scale * r.size);
-        report::Raster raster(side, side, white);
-        for (int row = 0; row < side; ++row) {
-            for (int column = 0; column < side; ++column) {
-                const auto at = static_cast<std::size_t>((row * r.side / side) * r.side +
-                                                         column * r.side / side);
-                raster.at(column, row) = report::colour(r.palette[r.code[at]]);
-            }
-        }
-        const Point corner = place(r.corner);
-        canvas_.image(corner[0], corner[1], raster);
+        paint_square(r.corner, r.size, [&](int row, int column, int side) {
+            const int at = (row * r.side / side) * r.side + column * r.side / side;
+            return report::colour(r.palette[r.code[static_cast<std::size_t>(at)]]);
+        });
     }
 
     Canvas& canvas_;

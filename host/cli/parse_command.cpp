@@ -1,28 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "cli/acceleration_option.h"
 #include "cli/before.h"
 #include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/export_options.h"
 #include "cli/further_options.h"
 #include "cli/interrupt.h"
-#include "cli/isolate_option.h"
+#include "cli/keep_to_budget.h"
 #include "cli/long_run.h"
-#include "cli/max_memory_option.h"
+#include "cli/option_values.h"
 #include "cli/print.h"
+#include "cli/shared_options.h"
 #include "cli/summary.h"
-#include "cli/unit_option.h"
 #include "io/output_folder.h"
 #include "io/text.h"
 #include "safety/earthquake/intensity.h"
@@ -62,45 +59,6 @@ struct ParseArguments {
     Team team;
 };
 
-std::vector<std::string> split_commas(const std::string& text) {
-    std::vector<std::string> parts;
-    std::stringstream stream(text);
-    for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-    return parts;
-}
-
-Vec3 parse_up(const char* option, const std::string& text) {
-    const auto bad = [&] {
-        return Error(ErrorKind::usage, std::string(option) + " " + text +
-                                           ": expected three numbers X,Y,Z, not all zero");
-    };
-    const std::vector<std::string> parts = split_commas(text);
-    if (parts.size() != 3) throw bad();
-    Vec3 up{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        std::size_t used = 0;
-        try {
-            up[i] = std::stod(parts[i], &used);
-        } catch (const std::exception&) {
-            throw bad();
-        }
-        if (used != parts[i].size() || !std::isfinite(up[i])) throw bad();
-    }
-    const double length = std::hypot(up[0], up[1], up[2]);
-    if (!(length > 0) || !std::isfinite(length)) throw bad();
-    for (double& c : up) c /= length;
-    return up;
-}
-
-std::optional<double> parse_contents(const std::string& text) {
-    if (text == "solid") return std::nullopt;
-    double value = 0;
-    if (!io::parse_number(text, value))
-        throw Error(ErrorKind::usage,
-                    "--contents " + text + ": expected kg/m^3, a number from 0 on, or solid");
-    return value;
-}
-
 // A sibling of nothing the user owns: named after the input, in the current folder.
 std::filesystem::path default_output(const std::filesystem::path& input) {
     std::filesystem::path name = input.has_filename() ? input : input.parent_path();
@@ -115,15 +73,14 @@ void read_options(ParseArguments& a) {
     if (a.voxel_m) {
         // In the library 0 means "from the data"; who writes it here hardly means that.
         if (*a.voxel_m == 0)
-            throw Error(ErrorKind::usage,
-                        "--voxel 0: expected a number above 0; leave it out to have the voxels' "
-                        "size found from the scan");
+            throw wrong_value("--voxel", "0",
+                              "a number above 0; leave it out to have the voxels' size found from "
+                              "the scan");
         a.options.voxel_m = *a.voxel_m;
     }
     if (a.tile_m) {
         if (*a.tile_m == 0)
-            throw Error(ErrorKind::usage,
-                        "--tile 0: expected metres above 0; leave it out for the default");
+            throw wrong_value("--tile", "0", "metres above 0; leave it out for the default");
         a.options.tile_m = *a.tile_m;
     }
     if (!a.up.empty()) a.options.up = parse_up("--up", a.up);
@@ -371,7 +328,9 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
         ->capture_default_str();
     app.add_option_function<std::string>(
            "--contents",
-           [a](const std::string& text) { a->options.contents_kg_m3 = parse_contents(text); },
+           [a](const std::string& text) {
+               a->options.contents_kg_m3 = parse_contents("--contents", text);
+           },
            "What closed furniture holds, in kg/m^3 of its inside, beside boards of 18 mm; or\n"
            "solid, to weigh all things as if they were solid")
         ->default_str("68");

@@ -66,9 +66,8 @@ void check(const VerifyArguments& a) {
     for (const auto& [name, value] :
          {std::pair{"--seconds", a.seconds}, std::pair{"--time-limit", a.time_limit_s}}) {
         if (!(value > 0) || value > 86400)
-            throw Error(ErrorKind::usage, std::string(name) +
-                                              ": expected seconds above 0, a day's "
-                                              "at most");
+            throw Error(ErrorKind::usage,
+                        std::string(name) + ": expected seconds above 0, a day's at most");
     }
 }
 
