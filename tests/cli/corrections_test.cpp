@@ -63,35 +63,31 @@ class CorrectedParse : public Program {
 };
 
 TEST_F(CorrectedParse, goes_on_from_where_the_first_began_to_group) {
-    EXPECT_EQ(parsed({"-o", "out"}).err.find(goes_on), std::string::npos);
+    EXPECT_THAT(parsed({"-o", "out"}).err, Not(HasSubstr(goes_on)));
     const Json plain = scene("out");
     EXPECT_FALSE(plain.contains("corrections"));
     ASSERT_TRUE(fs::exists(in("out/parse.cache")));
     put_corrections(crate_and_box);
     const Finished corrected = parsed({"-o", "out", "--corrections", "corrections.json"});
-    EXPECT_NE(corrected.err.find(goes_on), std::string::npos) << corrected.err;
-    EXPECT_EQ(corrected.err.find("ingest"), std::string::npos) << corrected.err;
-    EXPECT_NE(corrected.out.find("2 of 3 corrections held."), std::string::npos) << corrected.out;
-    EXPECT_NE(corrected.out.find("(chest)"), std::string::npos) << corrected.out;
+    EXPECT_THAT(corrected.err, HasSubstr(goes_on));
+    EXPECT_THAT(corrected.err, Not(HasSubstr("ingest")));
+    EXPECT_THAT(corrected.out, HasSubstr("2 of 3 corrections held."));
+    EXPECT_THAT(corrected.out, HasSubstr("(chest)"));
     // Of the output that it replaces.
-    EXPECT_NE(corrected.out.find("\nWorst before (out/scene.json): nothing is at risk; "),
-              std::string::npos)
-        << corrected.out;
-    EXPECT_NE(corrected.out.find("Note: Correction 3 (fixed) did not hold: found nothing within"),
-              std::string::npos)
-        << corrected.out;
+    EXPECT_THAT(corrected.out, HasSubstr("\nWorst before (out/scene.json): nothing is at risk; "));
+    EXPECT_THAT(corrected.out,
+                HasSubstr("Note: Correction 3 (fixed) did not hold: found nothing within"));
     const Json now = scene("out");
     EXPECT_EQ(now.at("objects").size() + 1, plain.at("objects").size());
     ASSERT_EQ(now.at("corrections").size(), 3u);
     EXPECT_EQ(now.at("corrections")[0].at("outcome"), "held");
     EXPECT_EQ(now.at("corrections")[2].at("held"), false);
     // The same as from the beginning, and as before without them.
-    EXPECT_EQ(
-        parsed({"-o", "anew", "--corrections", "corrections.json", "--no-cache"}).err.find(goes_on),
-        std::string::npos);
+    EXPECT_THAT(parsed({"-o", "anew", "--corrections", "corrections.json", "--no-cache"}).err,
+                Not(HasSubstr(goes_on)));
     EXPECT_FALSE(fs::exists(in("anew/parse.cache")));
     expect_same("out", "anew");
-    EXPECT_NE(parsed({"-o", "out"}).err.find(goes_on), std::string::npos);
+    EXPECT_THAT(parsed({"-o", "out"}).err, HasSubstr(goes_on));
     EXPECT_EQ(scene("out"), plain);
     EXPECT_EQ(everything().size(), 2u + 2 + 8 + 7);  // the cloud, the corrections, both outputs
 }
@@ -165,8 +161,8 @@ TEST_F(CorrectedParse, does_without_a_cache_that_is_damaged) {
             damaged[random.below(whole.size())] ^= 0x10;
         put("out/parse.cache", damaged);
         const Finished done = parsed(coarsely);
-        EXPECT_EQ(done.err.find(goes_on), std::string::npos) << done.err;
-        EXPECT_NE(done.err.find("parse.cache is damaged"), std::string::npos) << done.err;
+        EXPECT_THAT(done.err, Not(HasSubstr(goes_on)));
+        EXPECT_THAT(done.err, HasSubstr("parse.cache is damaged"));
         EXPECT_EQ(scene("out"), plain);
         EXPECT_TRUE(bytes_of_file(in("out/parse.cache")) == whole);
     }
@@ -174,7 +170,7 @@ TEST_F(CorrectedParse, does_without_a_cache_that_is_damaged) {
     std::vector<std::string> elsewhere = coarsely;
     elsewhere.insert(elsewhere.end(), {"--cache", "no/such/folder"});
     const Finished done = parsed(elsewhere);
-    EXPECT_NE(done.err.find("the next parse begins anew"), std::string::npos) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("the next parse begins anew"));
 }
 
 TEST_F(CorrectedParse, fails_by_what_contradicts_itself) {

@@ -26,7 +26,7 @@ TEST_F(Evaluate, prints_tables_and_writes_them) {
     ASSERT_EQ(done.code, 0) << done.err;
     for (const char* part : {"Fig. 14", "Table 2", "94.1", "Table 3", "81.8", "after filling",
                              "cut discr.", "false alarm"})
-        EXPECT_NE(done.out.find(part), std::string::npos) << part << " in:\n" << done.out;
+        EXPECT_THAT(done.out, HasSubstr(part));
     EXPECT_EQ(everything(),
               (std::set<std::string>{"judged", "judged/scores.csv", "judged/tables.txt"}));
     EXPECT_TRUE(done.out.starts_with(bytes_of_file(in("judged/tables.txt"))));
@@ -38,14 +38,14 @@ TEST_F(Evaluate, prints_tables_of_groupings_and_fits_one_of_them) {
              "0.04", "--backend", "native", "-o", "judged"});
     ASSERT_EQ(table.code, 0) << table.err;
     for (const char* part : {"Table 3", "discriminative", "greedy", "SWC", "81.8"})
-        EXPECT_NE(table.out.find(part), std::string::npos) << part << " in:\n" << table.out;
+        EXPECT_THAT(table.out, HasSubstr(part));
     EXPECT_EQ(everything(), (std::set<std::string>{"judged", "judged/groupings.txt"}));
     EXPECT_EQ(table.out, bytes_of_file(in("judged/groupings.txt")));
     const Finished weights = run({"evaluate", "--fit-joints", "--seeds", "1", "--first", "4",
                                   "--frames", "6", "--voxel", "0.04", "--backend", "native"});
     ASSERT_EQ(weights.code, 0) << weights.err;
     EXPECT_EQ(std::count(weights.out.begin(), weights.out.end(), ','), 9) << weights.out;
-    EXPECT_NE(weights.out.find(" joints of 1 room"), std::string::npos) << weights.out;
+    EXPECT_THAT(weights.out, HasSubstr(" joints of 1 room"));
 }
 
 TEST_F(Evaluate, says_which_program_is_missing) {

@@ -70,7 +70,7 @@ TEST_F(Exports, of_a_parse_and_of_its_output_are_the_same_and_stand) {
     const Finished parsed = run({"parse", "crate.xyz", "-o", "out", "--backend", "native",
                                  "--disturbance", "wind", "--mjcf", "direct"});
     ASSERT_EQ(parsed.code, 0) << parsed.err;
-    EXPECT_NE(parsed.out.find("1 free bodies"), std::string::npos) << parsed.out;
+    EXPECT_THAT(parsed.out, HasSubstr("1 free bodies"));
     const Finished exported = run({"export", "out", "--mjcf", "read"});
     ASSERT_EQ(exported.code, 0) << exported.err;
     for (const char* name : {"scene.xml", "bodies.json"})
@@ -78,8 +78,7 @@ TEST_F(Exports, of_a_parse_and_of_its_output_are_the_same_and_stand) {
 
     const Finished verified = run({"verify", "out", "--seconds", "1"});
     ASSERT_EQ(verified.code, 0) << verified.err;
-    EXPECT_NE(verified.out.find(": 1 of 1 objects stay within 1 cm"), std::string::npos)
-        << verified.out;
+    EXPECT_THAT(verified.out, HasSubstr(": 1 of 1 objects stay within 1 cm"));
     const auto verdict = json_of("out/verify.json");
     EXPECT_EQ(verdict.at("schema"), "topple.verify/1");
     EXPECT_EQ(verdict.at("objects").size(), 1u);
@@ -104,7 +103,7 @@ TEST_F(Exports, of_a_parse_and_of_its_output_are_the_same_and_stand) {
     expect_failure(1, {"export", "out", "--mjcf", "to"}, {"solids.bin"});
     const Finished damaged = run({"verify", "out"});
     EXPECT_EQ(damaged.code, 1);
-    EXPECT_NE(damaged.err.find("topple: out/solids.bin: is damaged"), std::string::npos);
+    EXPECT_THAT(damaged.err, HasSubstr("topple: out/solids.bin: is damaged"));
     EXPECT_FALSE(std::filesystem::exists(in("out/verify.json")));
     std::filesystem::remove(in("out/solids.bin"));
     expect_failure(1, {"export", "out", "--mjcf", "to"}, {"solids.bin: is missing"});
@@ -117,7 +116,7 @@ TEST_F(Exports, are_not_verified_without_the_simulator) {
     const Finished finished = run({"verify", "out"});
     ::unsetenv("TOPPLE_READERS");
     EXPECT_EQ(finished.code, 2);
-    EXPECT_NE(finished.err.find("no program topple-mujoco"), std::string::npos) << finished.err;
+    EXPECT_THAT(finished.err, HasSubstr("no program topple-mujoco"));
     // One that does not run, as where MuJoCo's library has gone.
     const std::filesystem::path broken = put("topple-mujoco", "#!/bin/sh\nexit 127\n");
     std::filesystem::permissions(broken, std::filesystem::perms::owner_all);
@@ -125,8 +124,8 @@ TEST_F(Exports, are_not_verified_without_the_simulator) {
     const Finished crashed = run({"verify", "out"});
     ::unsetenv("TOPPLE_READERS");
     EXPECT_EQ(crashed.code, 3);
-    EXPECT_NE(crashed.err.find("exit code 127"), std::string::npos) << crashed.err;
-    EXPECT_NE(crashed.err.find("apt-get install libmujoco-dev"), std::string::npos) << crashed.err;
+    EXPECT_THAT(crashed.err, HasSubstr("exit code 127"));
+    EXPECT_THAT(crashed.err, HasSubstr("apt-get install libmujoco-dev"));
 }
 
 }  // namespace

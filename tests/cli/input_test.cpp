@@ -187,9 +187,8 @@ TEST_F(Input, in_another_unit_than_metres) {
     }
     put("room.xyz", room_in(1));
     const Finished tiny = run({"parse", "room.xyz", "-o", "out", "--unit", "cm"});
-    EXPECT_NE(tiny.out.find("Note: It all extends over 0.032 m: check --unit.\n"),
-              std::string::npos)
-        << tiny.out << tiny.err;
+    EXPECT_THAT(tiny.out, HasSubstr("Note: It all extends over 0.032 m: check --unit.\n"))
+        << tiny.err;
     std::filesystem::remove_all(in("out"));
     put_sequence("frames", 2);
     expect_failure(2, {"parse", "frames", "-o", "out", "--quiet", "--unit", "mm"},
@@ -235,10 +234,8 @@ TEST_F(Input, a_sequence_without_intrinsics) {
     put_sequence("scan", 2);
     put("scan/intrinsics.json", "{\"width\": 80,\n \"height\" 60}");
     const Finished damaged = run({"parse", "scan", "-o", "out", "--quiet"});
-    EXPECT_NE(damaged.err.find("intrinsics.json: is no JSON: line 2, column 12: "),
-              std::string::npos)
-        << damaged.err;
-    EXPECT_EQ(damaged.err.find("json.exception"), std::string::npos) << damaged.err;
+    EXPECT_THAT(damaged.err, HasSubstr("intrinsics.json: is no JSON: line 2, column 12: "));
+    EXPECT_THAT(damaged.err, Not(HasSubstr("json.exception")));
     std::filesystem::remove(in("scan/intrinsics.json"));
     refused("scan", {"intrinsics.json"});
 }

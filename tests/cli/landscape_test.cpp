@@ -55,12 +55,11 @@ void expect_told_summary(const std::string& out) {
     EXPECT_EQ(told, 3u) << out;
     EXPECT_FALSE(uncertain.empty()) << out;
     // By category the third comes before some with a risk, and has none itself.
-    EXPECT_NE(out.find("\nThe first 3 to look at of the "), std::string::npos) << out;
-    EXPECT_NE(
-        out.find(" Nothing upsets it as measured; if its foot is one error smaller, it falls"),
-        std::string::npos)
-        << out;
-    EXPECT_NE(out.find(" whose barrier is above its error; that of "), std::string::npos) << out;
+    EXPECT_THAT(out, HasSubstr("\nThe first 3 to look at of the "));
+    EXPECT_THAT(
+        out,
+        HasSubstr(" Nothing upsets it as measured; if its foot is one error smaller, it falls"));
+    EXPECT_THAT(out, HasSubstr(" whose barrier is above its error; that of "));
 }
 
 // Of all files, the cache among them.
@@ -83,8 +82,8 @@ TEST_F(DrawLandscape, makes_pictures_of_the_worst_or_the_chosen_object) {
         in("out"));
     const Finished worst = run({"landscape", "out"});
     ASSERT_EQ(worst.code, 0) << worst.err;
-    EXPECT_NE(worst.out.find(".png"), std::string::npos) << worst.out;
-    EXPECT_NE(worst.out.find("Object "), std::string::npos) << worst.out;
+    EXPECT_THAT(worst.out, HasSubstr(".png"));
+    EXPECT_THAT(worst.out, HasSubstr("Object "));
     const Finished chosen = run({"landscape", "out", "--object", "1", "-o", "one.svg"});
     ASSERT_EQ(chosen.code, 0) << chosen.err;
     const std::string svg = bytes_of_file(in("one.svg"));

@@ -80,16 +80,14 @@ TEST_F(Output, says_so_where_a_peak_is_meant_in_another_unit) {
         return run({"parse", "plane.xyz", "--disturbance", "earthquake", "--pga", pga, "-o", out})
             .out;
     };
-    EXPECT_NE(parse("0.3", "weak")
-                  .find("Note: --pga 0.3 is 0.031 g (light shaking, intensity "
-                        "IV): for 0.3 g give --pga 2.94."),
-              std::string::npos);
+    EXPECT_THAT(parse("0.3", "weak"),
+                HasSubstr("Note: --pga 0.3 is 0.031 g (light shaking, intensity "
+                          "IV): for 0.3 g give --pga 2.94."));
     for (const char* pga : {"0.3g", "0.05g", "3g"})  // who writes a unit means it
-        EXPECT_EQ(parse(pga, pga).find("give --pga"), std::string::npos) << pga;
-    EXPECT_NE(parse("30", "stronger")
-                  .find("Note: --pga 30 is 3.1 g (extreme shaking, intensity X or more), "
-                        "stronger than nearly all that were recorded; for 30 % of g give"),
-              std::string::npos);
+        EXPECT_THAT(parse(pga, pga), Not(HasSubstr("give --pga"))) << pga;
+    EXPECT_THAT(parse("30", "stronger"),
+                HasSubstr("Note: --pga 30 is 3.1 g (extreme shaking, intensity X or more), "
+                          "stronger than nearly all that were recorded; for 30 % of g give"));
     EXPECT_NE(bytes_of_file(in("0.3g/scene.json")).find("\"pga_m_s2\": 2.941995"),
               std::string::npos);
 }
@@ -109,7 +107,7 @@ TEST_F(Output, stages_then_the_summary_unless_quiet) {
     EXPECT_EQ(loud.code, 0) << loud.err;
     // What each stage does, and its seconds.
     EXPECT_TRUE(loud.err.starts_with("ingest: reading the scan ... ")) << loud.err;
-    EXPECT_NE(loud.err.find("\noutput: writing the files ... "), std::string::npos) << loud.err;
+    EXPECT_THAT(loud.err, HasSubstr("\noutput: writing the files ... "));
     std::istringstream lines(loud.err);
     for (std::string line; std::getline(lines, line);) {
         double seconds = -1;
@@ -118,9 +116,9 @@ TEST_F(Output, stages_then_the_summary_unless_quiet) {
         EXPECT_EQ(static_cast<std::size_t>(end), line.size()) << line;
         EXPECT_GE(seconds, 0) << line;
     }
-    EXPECT_EQ(loud.err.find('\r'), std::string::npos) << "that is for terminals";
-    EXPECT_NE(loud.out.find("10000 points"), std::string::npos) << loud.out;
-    EXPECT_NE(loud.out.find("out/report.html"), std::string::npos) << loud.out;
+    EXPECT_THAT(loud.err, Not(HasSubstr("\r"))) << "that is for terminals";
+    EXPECT_THAT(loud.out, HasSubstr("10000 points"));
+    EXPECT_THAT(loud.out, HasSubstr("out/report.html"));
     EXPECT_EQ(everything(), whole_output);
 
     const Finished quiet = run({"parse", "plane.xyz", "-o", "out", "--quiet"});
@@ -136,7 +134,7 @@ TEST_F(Output, the_report_knows_the_command_and_the_notes_of_the_scan) {
     put("plane.xyz.topple-notes.txt", "The phone's poses drift.\n");
     const Finished loud = run({"parse", "plane.xyz", "-o", "out", "--voxel", "0.05"});
     EXPECT_EQ(loud.code, 0) << loud.err;
-    EXPECT_NE(loud.out.find("\nNote: The phone's poses drift.\n"), std::string::npos) << loud.out;
+    EXPECT_THAT(loud.out, HasSubstr("\nNote: The phone's poses drift.\n"));
     const std::string report = bytes_of_file(in("out/report.html"));
     EXPECT_NE(report.find(R"(","parse","plane.xyz","-o","out","--voxel","0.05"])"),
               std::string::npos);
@@ -192,7 +190,7 @@ TEST_P(Interrupted, leaves_nothing) {
     EXPECT_EQ(finished.code, 128 + expected) << finished.err;
     EXPECT_TRUE(finished.err.ends_with("topple: interrupted; nothing was written\n"))
         << finished.err;
-    EXPECT_EQ(finished.err.find("output: "), std::string::npos) << finished.err;
+    EXPECT_THAT(finished.err, Not(HasSubstr("output: ")));
     EXPECT_EQ(everything(), before);
     EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(30));
 }

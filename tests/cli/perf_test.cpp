@@ -25,11 +25,11 @@ TEST_F(Perf, refuses_what_it_does_not_have) {
 }
 
 TEST_F(Perf, lists_its_cases) {
-    EXPECT_NE(run({"perf", "--help"}).out.find("perf/compare"), std::string::npos);
+    EXPECT_THAT(run({"perf", "--help"}).out, HasSubstr("perf/compare"));
     const Finished list = run({"perf", "--list"});
     ASSERT_EQ(list.code, 0) << list.err;
     for (const char* name : {"triad\n", "support_function\n", "landscapes/hulls\n", "pipeline\n"})
-        EXPECT_NE(list.out.find(name), std::string::npos) << name;
+        EXPECT_THAT(list.out, HasSubstr(name));
 }
 
 // A box on a floor, stage by stage.
@@ -48,7 +48,7 @@ TEST_F(Perf, profiles_a_parse) {
     std::istringstream lines(done.out);
     std::string line;
     ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_NE(line.find("cpu s"), std::string::npos) << line;
+    EXPECT_THAT(line, HasSubstr("cpu s"));
     std::set<std::string> stages;
     std::string last;
     while (std::getline(lines, line)) {
@@ -93,7 +93,7 @@ TEST_F(Perf, counts_and_results_are_those_of_the_last_time) {
     ASSERT_TRUE(std::getline(csv, head) && std::getline(csv, row));
     EXPECT_FALSE(std::getline(csv, more)) << more;
     EXPECT_TRUE(head.starts_with("backend,device,driver,case,best_ms")) << head;
-    EXPECT_NE(row.find(",multiply_add,"), std::string::npos) << row;
+    EXPECT_THAT(row, HasSubstr(",multiply_add,"));
     EXPECT_TRUE(row.ends_with(results[0].at("hash").get<std::string>())) << row;
 }
 

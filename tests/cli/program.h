@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -18,6 +19,8 @@
 
 // The real program, run in a folder of its own.
 namespace topple::test {
+
+using ::testing::HasSubstr, ::testing::Not;
 
 struct Finished {
     int code = -1;  // exit code, or -1 where it was killed: by a signal, or by us when late
@@ -90,8 +93,7 @@ class Program : public Files {
         EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
         EXPECT_TRUE(finished.err.ends_with("\n")) << finished.err;
         for (const auto& part : parts) {
-            EXPECT_NE(finished.err.find(part), std::string::npos)
-                << finished.err << "should say: " << part;
+            EXPECT_THAT(finished.err, HasSubstr(part));
         }
         EXPECT_EQ(everything(), before);
     }

@@ -38,7 +38,7 @@ TEST_F(Tiled, a_plane_has_nothing_to_fall) {
     EXPECT_EQ(finished.code, 0) << finished.err;
     EXPECT_TRUE(std::filesystem::exists(in("out") / "scene.json"));
     for (const auto& entry : std::filesystem::directory_iterator(in("")))
-        EXPECT_EQ(entry.path().filename().string().find("topple-work"), std::string::npos) << entry;
+        EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("topple-work"))) << entry;
 }
 
 TEST_F(Tiled, a_stopped_parse_says_what_stays_and_the_next_one_goes_on) {
@@ -53,16 +53,15 @@ TEST_F(Tiled, a_stopped_parse_says_what_stays_and_the_next_one_goes_on) {
     };
     const Finished first = stopped();
     EXPECT_EQ(first.code, 128 + SIGINT) << first.err;
-    EXPECT_EQ(first.err.find("going on"), std::string::npos) << first.err;
+    EXPECT_THAT(first.err, Not(HasSubstr("going on")));
     const std::string said =
         "topple: interrupted; nothing was written but .out.topple-work, which holds ";
-    EXPECT_NE(first.err.find(said), std::string::npos) << first.err;
-    EXPECT_NE(first.err.find("the same command goes on from there"), std::string::npos)
-        << first.err;
+    EXPECT_THAT(first.err, HasSubstr(said));
+    EXPECT_THAT(first.err, HasSubstr("the same command goes on from there"));
     EXPECT_TRUE(std::filesystem::exists(in(".out.topple-work")));
     const Finished second = stopped();
     EXPECT_TRUE(second.err.starts_with("going on with ")) << second.err;
-    EXPECT_NE(second.err.find(" blocks from .out.topple-work\n"), std::string::npos) << second.err;
+    EXPECT_THAT(second.err, HasSubstr(" blocks from .out.topple-work\n"));
     // Stopped before there was anything to go on from.
     std::filesystem::remove_all(in(".out.topple-work"));
     const Finished early = run({"parse", "b.ply", "--tile", "5", "-o", "out"},
@@ -76,18 +75,17 @@ TEST_F(Tiled, estimates_without_parsing) {
     const Finished finished = run({"estimate", "plane.xyz"});
     EXPECT_EQ(finished.code, 0) << finished.err;
     for (const char* word : {"points", "surface", "time", "memory", "results"})
-        EXPECT_NE(finished.out.find(word), std::string::npos) << finished.out;
-    EXPECT_EQ(finished.out.find("limit"), std::string::npos) << finished.out;
+        EXPECT_THAT(finished.out, HasSubstr(word));
+    EXPECT_THAT(finished.out, Not(HasSubstr("limit")));
     // As the note of its parse.
-    EXPECT_NE(finished.out.find(", points about 20 mm apart\n"), std::string::npos) << finished.out;
+    EXPECT_THAT(finished.out, HasSubstr(", points about 20 mm apart\n"));
     const auto limit = [&](const char* size) {
         const Finished limited = run({"estimate", "plane.xyz", "--quiet", "--max-memory", size});
         EXPECT_EQ(limited.code, 0) << limited.err;
         return limited.out;
     };
-    EXPECT_NE(limit("4G").find("4 GiB of --max-memory suffice"), std::string::npos) << limit("4G");
-    EXPECT_NE(limit("1M").find("1 MiB of --max-memory are too few"), std::string::npos)
-        << limit("1M");
+    EXPECT_THAT(limit("4G"), HasSubstr("4 GiB of --max-memory suffice"));
+    EXPECT_THAT(limit("1M"), HasSubstr("1 MiB of --max-memory are too few"));
     expect_failure(1, {"estimate", "away.ply", "--quiet"}, {"away.ply"});
     expect_failure(1, {"parse", "plane.xyz", "--unit", "mm", "--quiet"},
                    {"plane.xyz", "check --unit"});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <map>
 
 #include "cli/program.h"
 
@@ -40,8 +41,8 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
                    {"--disturbance: human is given twice"});
     // Nothing is near this one.
     const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
-    EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
-    EXPECT_NE(far.err.find("--kaleidoscope"), std::string::npos) << far.err;
+    EXPECT_THAT(far.err, Not(HasSubstr("did you mean")));
+    EXPECT_THAT(far.err, HasSubstr("--kaleidoscope"));
 }
 
 TEST_F(Usage, says_how_to_write_what_has_a_space_in_it) {
@@ -55,69 +56,35 @@ TEST_F(Usage, says_how_to_write_what_has_a_space_in_it) {
     expect_failure(2, {"parse", "plane.xyz", "--title", "Room", "12", "--voxel", "0.03"},
                    {"12", "put a title of several words in quotes, as in \"Room 12\""});
     const Finished other = run({"parse", "plane.xyz", "--voxel", "0.03", "more.xyz"});
-    EXPECT_EQ(other.err.find("without"), std::string::npos) << other.err;
+    EXPECT_THAT(other.err, Not(HasSubstr("without")));
 }
 
 // Not quiet: the name of a stage on stderr would show that the parse had begun.
 TEST_F(Usage, refuses_values_before_it_parses) {
     put_plane("plane.xyz");
-    const std::vector<std::vector<std::string>> bad{{"--voxel", ""},
-                                                    {"--up", ""},
-                                                    {"--unit", ""},
-                                                    {"--disturbance", ""},
-                                                    {"--motion", ""},
-                                                    {"--threads", "100000"},
-                                                    {"--voxel", "0"},
-                                                    {"--voxel", "-1"},
-                                                    {"--voxel", "nan"},
-                                                    {"--voxel", "inf"},
-                                                    {"--voxel", "1e-9"},
-                                                    {"--voxel", "50"},
-                                                    {"--voxel", "2cm"},
-                                                    {"--up", "0,0,0"},
-                                                    {"--up", "0,0"},
-                                                    {"--up", "0,0,1,0"},
-                                                    {"--up", "0,0,nan"},
-                                                    {"--up", "up"},
-                                                    {"--up", "0,0,1e400"},
-                                                    {"--disturbance", "flood"},
-                                                    {"--backend", "cuda"},
-                                                    {"--disturbance", "human,flood"},
-                                                    {"--wind", "-3"},
-                                                    {"--wind", "nan"},
-                                                    {"--wind-from", "north"},
-                                                    {"--wind-from", "nan"},
-                                                    {"--wind-from", "400"},
-                                                    {"--pga", "0"},
-                                                    {"--pga", "0.3ft"},
-                                                    {"--pga", "g"},
-                                                    {"--pga", "0.3g/s"},
-                                                    {"--pga", "30g"},
-                                                    {"--floor-amplification", "0"},
-                                                    {"--floor-amplification", "nan"},
-                                                    {"--tile", "0"},
-                                                    {"--tile", "0.5"},
-                                                    {"--tile", "nan"},
-                                                    {"--accelerogram-unit", "m/s2"},
-                                                    {"--accelerogram-unit", "ft"},
-                                                    {"--density", "-700"},
-                                                    {"--friction", "0"},
-                                                    {"--max-memory", "much"},
-                                                    {"--max-memory", "-1G"},
-                                                    {"--max-memory", "nan"},
-                                                    {"--max-memory", "5 GB"},
-                                                    {"--max-memory", "1e30T"},
-                                                    {"--max-memory", "0.5"},
-                                                    {"--unit", "yard"},
-                                                    {"--unit", "0.001"},
-                                                    {"--seed", "-1"},
-                                                    {"--seed", "99999999999999999999"},
-                                                    {"--threads", "-1"},
-                                                    {"--threads", "many"}};
-    for (const auto& option : bad) {
-        // The value as it was given, or for numbers as it was understood.
-        expect_failure(2, {"parse", "plane.xyz", option[0], option[1]}, {option[0]});
-    }
+    const std::map<std::string, std::vector<std::string>> bad{
+        {"--voxel", {"", "0", "-1", "nan", "inf", "1e-9", "50", "2cm"}},
+        {"--up", {"", "0,0,0", "0,0", "0,0,1,0", "0,0,nan", "up", "0,0,1e400"}},
+        {"--unit", {"", "yard", "0.001"}},
+        {"--disturbance", {"", "flood", "human,flood"}},
+        {"--motion", {""}},
+        {"--threads", {"100000", "-1", "many"}},
+        {"--backend", {"cuda"}},
+        {"--wind", {"-3", "nan"}},
+        {"--wind-from", {"north", "nan", "400"}},
+        {"--pga", {"0", "0.3ft", "g", "0.3g/s", "30g"}},
+        {"--floor-amplification", {"0", "nan"}},
+        {"--tile", {"0", "0.5", "nan"}},
+        {"--accelerogram-unit", {"m/s2", "ft"}},
+        {"--density", {"-700"}},
+        {"--friction", {"0"}},
+        {"--max-memory", {"much", "-1G", "nan", "5 GB", "1e30T", "0.5"}},
+        {"--seed", {"-1", "99999999999999999999"}},
+    };
+    for (const auto& [option, values] : bad)
+        for (const std::string& value : values)
+            // The value as it was given, or for numbers as it was understood.
+            expect_failure(2, {"parse", "plane.xyz", option, value}, {option});
     expect_failure(2, {"parse", "plane.xyz", "--voxel", "-1"}, {"-1"});
     expect_failure(2, {"parse", "plane.xyz", "--disturbance", "flood"}, {"flood", "earthquake"});
     expect_failure(2, {"parse", "plane.xyz", "--backend", "cuda"},
@@ -176,14 +143,14 @@ TEST_F(Usage, help_names_every_command_and_option) {
               "--unit", "--wind",    "--wind-from",  "--pga",   "--density", "--friction",
               "--seed", "--threads", "--max-memory", "--quiet", "native",    "opencl",
               "vulkan", "human",     "earthquake",   ".ply",    ".pcd",      ".xyz"}) {
-            EXPECT_NE(help.out.find(option), std::string::npos) << option << " in\n" << help.out;
+            EXPECT_THAT(help.out, HasSubstr(option));
         }
         for (const char* internal : {"->", "{false}", "ENUM"})
-            EXPECT_EQ(help.out.find(internal), std::string::npos) << internal << help.out;
+            EXPECT_THAT(help.out, Not(HasSubstr(internal)));
         if (arguments.size() > 1) continue;
         for (const char* name :
              {"parse", "devices", "generate", "--version", "Exit codes", "1024^3", "130"}) {
-            EXPECT_NE(help.out.find(name), std::string::npos) << name << " in\n" << help.out;
+            EXPECT_THAT(help.out, HasSubstr(name));
         }
     }
 }
@@ -193,12 +160,12 @@ TEST_F(Usage, help_fits_a_screen) {
         const Finished help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_LE(std::ranges::count(help.out, '\n'), 50) << help.out;
-        EXPECT_NE(help.out.find("--help-all"), std::string::npos) << help.out;
+        EXPECT_THAT(help.out, HasSubstr("--help-all"));
     }
     const Finished all = run({"--help"});
     EXPECT_LE(std::ranges::count(all.out, '\n'), 30) << all.out;
     for (const char* word : {"parse", "generate", "devices", "--help-all", "--version", "130"})
-        EXPECT_NE(all.out.find(word), std::string::npos) << word << all.out;
+        EXPECT_THAT(all.out, HasSubstr(word));
 }
 
 TEST_F(Usage, version) {
@@ -214,11 +181,9 @@ TEST_F(Usage, devices_of_all_three_backends) {
     const Finished finished = run({"devices"});
     EXPECT_EQ(finished.code, 0) << finished.err;
     for (const std::string backend : {"native", "opencl", "vulkan"}) {
-        EXPECT_NE(("\n" + finished.out).find("\n" + backend + " "), std::string::npos)
-            << backend << " in\n"
-            << finished.out;
+        EXPECT_THAT("\n" + finished.out, HasSubstr("\n" + backend + " "));
     }
-    EXPECT_NE(finished.out.find("driver"), std::string::npos) << finished.out;
+    EXPECT_THAT(finished.out, HasSubstr("driver"));
     EXPECT_TRUE(everything().empty());
 }
 
