@@ -69,6 +69,20 @@ std::optional<CloudView> caller_points(const std::vector<py::array>& points,
     return view_of(points, {}, colours, {});
 }
 
+ParseResult labelled_points(const std::vector<py::array>& points, const py::array& object,
+                            const std::string& call) {
+    const auto copied = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
+    ParseResult result;
+    ScenePoints& to = result.scene.points;
+    copied(to.x, row<const float>(points.at(0), "x"));
+    copied(to.y, row<const float>(points.at(1), "y"));
+    copied(to.z, row<const float>(points.at(2), "z"));
+    copied(to.object, row<const std::int32_t>(object, "point_object"));
+    if (to.y.size() != to.x.size() || to.z.size() != to.x.size())
+        throw Error(ErrorKind::usage, call + ": the columns differ in length");
+    return result;
+}
+
 FrameView frame_view(const PyFrame& frame) {
     FrameView out;
     if (py::isinstance<py::array_t<float>>(frame.first))

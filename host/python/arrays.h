@@ -45,6 +45,10 @@ void see_from(const std::vector<py::array>& viewpoints, CloudView& view);
 std::optional<CloudView> caller_points(const std::vector<py::array>& points,
                                        const std::vector<py::array>& colours);
 
+// Of the columns that a pickle holds: a result of its points and the object of each, and no more.
+ParseResult labelled_points(const std::vector<py::array>& points, const py::array& object,
+                            const std::string& call);
+
 // While it lives, the result has the coordinates of these points. Nobody else may use it meanwhile.
 class LentCoordinates {
   public:

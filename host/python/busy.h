@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <pybind11/pybind11.h>
+
 namespace topple::python {
 
 // Lives while a thread works without the interpreter's lock, from before it lets go of it until it
@@ -19,5 +21,13 @@ class Busy {
     // Called at the interpreter's end, without its lock: stops and waits for all.
     static void stop_all();
 };
+
+// What work() gives, which is called without the interpreter's lock.
+template <class Work>
+auto unlocked(const Work& work) {
+    const Busy busy;
+    const pybind11::gil_scoped_release release;
+    return work();
+}
 
 }  // namespace topple::python

@@ -38,14 +38,11 @@ void bind_export(py::module_& module) {
             options.visuals = visuals;
             options.threads = threads;
             options.cancelled = Busy::must_stop;
-            ExportSummary summary;
             const std::optional<CloudView> view = caller_points(points, colours);
-            {
-                const Busy busy;
-                const py::gil_scoped_release release;
+            const ExportSummary summary = unlocked([&] {
                 const LentCoordinates lent(view, parsed);
-                summary = export_scene(parsed.result, options);
-            }
+                return export_scene(parsed.result, options);
+            });
             py::list bodies;
             for (const ExportedBody& body : summary.bodies) bodies.append(body_tuple(body));
             // None, not NaN: it equals itself, and `if` tells it.

@@ -71,21 +71,13 @@ void bind_devices(py::module_& module) {
         "open_device",
         [](const std::string& backend, unsigned threads) {
             auto opened = std::make_shared<SharedDevice>();
-            const Busy busy;
-            const py::gil_scoped_release release;
-            opened->device = device::open_device(backend, threads);
+            opened->device = unlocked([&] { return device::open_device(backend, threads); });
             return opened;
         },
         py::arg("backend") = "auto", py::arg("threads") = 0);
     module.def("list_devices", [] {
-        std::vector<device::Listing> listings;
-        {
-            const Busy busy;
-            const py::gil_scoped_release release;
-            listings = device::list_devices();
-        }
         py::list out;
-        for (const device::Listing& l : listings)
+        for (const device::Listing& l : unlocked(device::list_devices))
             out.append(py::make_tuple(device::to_string(l.backend), l.info.name, l.info.driver,
                                       l.info.gpu, l.usable, l.problem));
         return out;

@@ -90,9 +90,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
     if (device) options.device = device->here();
     auto out = std::make_shared<Parsed>();
     try {
-        const Busy busy;
-        const py::gil_scoped_release release;
-        out->result = parse_with(options);
+        out->result = unlocked([&] { return parse_with(options); });
     } catch (const Error&) {
         caller.rethrow();
         throw;
@@ -217,24 +215,22 @@ void bind_parse(py::module_& module) {
     });
     module.def("load", [](const std::string& folder) {
         auto out = std::make_shared<Parsed>();
-        const Busy busy;
-        const py::gil_scoped_release release;
-        out->result = read_outputs(folder);
+        out->result = unlocked([&] { return read_outputs(folder); });
         return out;
     });
     module.def("write",
                [](Parsed& parsed, const std::string& folder, bool pictures, bool glb, bool octomap,
                   const std::vector<py::array>& points, const std::vector<py::array>& colours) {
                    const std::optional<CloudView> view = caller_points(points, colours);
-                   const Busy busy;
-                   const py::gil_scoped_release release;
-                   const LentCoordinates lent(view, parsed);
                    OutputOptions options;
                    options.pictures = pictures;
                    options.glb = glb;
                    options.octomap = octomap;
                    options.cancelled = Busy::must_stop;
-                   write_outputs(parsed.result, folder, options);
+                   unlocked([&] {
+                       const LentCoordinates lent(view, parsed);
+                       write_outputs(parsed.result, folder, options);
+                   });
                });
 }
 

@@ -17,16 +17,7 @@ void bind_places(py::module_& module) {
     // Of the columns that a pickle holds, too: coordinates, and the object of each point.
     module.def("object_at", [](const std::vector<py::array>& points, const py::array& object,
                                const Vec3& place_m, double within_m) {
-        const auto copied = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
-        ParseResult result;
-        ScenePoints& to = result.scene.points;
-        copied(to.x, row<const float>(points.at(0), "x"));
-        copied(to.y, row<const float>(points.at(1), "y"));
-        copied(to.z, row<const float>(points.at(2), "z"));
-        copied(to.object, row<const std::int32_t>(object, "point_object"));
-        if (to.y.size() != to.x.size() || to.z.size() != to.x.size())
-            throw Error(ErrorKind::usage, "object_at: the columns differ in length");
-        return object_at(result, place_m, within_m);
+        return object_at(labelled_points(points, object, "object_at"), place_m, within_m);
     });
 }
 

@@ -203,31 +203,27 @@ auto point_array(Member member) {
         [member](const py::object& self) { return borrowed(scene_of(self).points.*member, self); };
 }
 
+// Of names and vectors in turn.
+template <class Vector, class... More>
+py::dict named_arrays(const py::object& owner, const char* name, const Vector& values,
+                      const More&... more) {
+    py::dict out;
+    out[name] = borrowed(values, owner);
+    if constexpr (sizeof...(more) > 0) out.attr("update")(named_arrays(owner, more...));
+    return out;
+}
+
 py::dict solid(const py::object& self) {
     const SolidVoxels& v = scene_of(self).solid;
-    py::dict out;
-    out["x"] = borrowed(v.x, self);
-    out["y"] = borrowed(v.y, self);
-    out["z"] = borrowed(v.z, self);
-    out["primitive"] = borrowed(v.primitive, self);
-    out["object"] = borrowed(v.object, self);
-    out["state"] = borrowed(v.state, self);
-    return out;
+    return named_arrays(self, "x", v.x, "y", v.y, "z", v.z, "primitive", v.primitive, "object",
+                        v.object, "state", v.state);
 }
 
 py::dict disturbance_fields(const py::object& self) {
     py::dict out;
-    for (const auto& [name, f] : scene_of(self).fields) {
-        py::dict field;
-        field["x"] = borrowed(f.x, self);
-        field["y"] = borrowed(f.y, self);
-        field["z"] = borrowed(f.z, self);
-        field["vx"] = borrowed(f.vx, self);
-        field["vy"] = borrowed(f.vy, self);
-        field["vz"] = borrowed(f.vz, self);
-        field["density"] = borrowed(f.density, self);
-        out[py::str(name)] = field;
-    }
+    for (const auto& [name, f] : scene_of(self).fields)
+        out[py::str(name)] = named_arrays(self, "x", f.x, "y", f.y, "z", f.z, "vx", f.vx, "vy",
+                                          f.vy, "vz", f.vz, "density", f.density);
     return out;
 }
 

@@ -32,14 +32,6 @@ std::unique_lock<std::mutex> alone(const Volume& volume) {
     return lock;
 }
 
-// Runs a stage without the interpreter's lock.
-template <class Stage>
-auto unlocked(const Stage& stage) {
-    const Busy busy;
-    const py::gil_scoped_release release;
-    return stage();
-}
-
 stages::Coordinates coordinates(const std::vector<py::array>& from, const char* name) {
     return {row<const float>(from.at(0), name), row<const float>(from.at(1), name),
             row<const float>(from.at(2), name)};
@@ -82,8 +74,6 @@ void bind_volume(py::module_& module) {
              [](const Volume& self, const std::vector<py::array>& depth, const py::array& poses,
                 std::uint32_t width, std::uint32_t height, const std::array<double, 5>& camera,
                 const Device& device) {
-                 const auto [fx, fy, cx, cy, depth_scale] = camera;
-                 const Intrinsics intrinsics{width, height, fx, fy, cx, cy, depth_scale};
                  const auto pose = row<const double>(poses, "camera_to_world");
                  std::vector<stages::DepthView> frames(depth.size());
                  for (std::size_t n = 0; n < frames.size(); ++n) {
@@ -91,7 +81,9 @@ void bind_volume(py::module_& module) {
                      std::ranges::copy(pose.subspan(16 * n, 16), frames[n].camera_to_world.begin());
                  }
                  const auto volume = alone(self);
-                 unlocked([&] { self->volume.carve(*device->here(), intrinsics, frames); });
+                 unlocked([&] {
+                     self->volume.carve(*device->here(), intrinsics(width, height, camera), frames);
+                 });
              })
         .def("fill",
              [](const Volume& self, unsigned votes, const std::vector<std::int32_t>& hollow,

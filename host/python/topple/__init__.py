@@ -57,24 +57,24 @@ class ExportedBody(NamedTuple):
     on_pad: bool  # its footing was not seen, or was cut away as it lay in others: it stands on a pad,
     held: bool  # or is held where it is
     struts: int  # of its parts: in the place of feet that were not seen
-    moved_m: list  # by which it was let down, z up
+    moved_m: "list[float]"  # by which it was let down, z up
     parts: int  # convex ones
     mass_kg: float
     solid_m3: float  # of the object as it was parsed
     parts_m3: float  # of its parts: more by what their hulls add
     lost_m3: float  # cut off its parts, so that no two bodies overlap
-    excess_share: float  # how much more parts_m3 is than solid_m3, as a share; None for a pad
-    lost_share: float  # lost_m3 as a share of solid_m3, which may be above 1; None for a pad
+    excess_share: "Optional[float]"  # how much more parts_m3 is than solid_m3, as a share; None for a pad
+    lost_share: "Optional[float]"  # lost_m3 as a share of solid_m3, which may be above 1; None for a pad
 
 
 class ExportSummary(NamedTuple):
     """What Result.export() made."""
-    bodies: list  # of ExportedBody: those of the objects by id, then pads
+    bodies: "list[ExportedBody]"  # those of the objects by id, then pads
     deepest_overlap_m: float  # of any two bodies
-    floor_m: float  # height of the main level floor; None: there is none
-    free_place_m: list  # the middle of the widest place on it where nothing stands, x, y, z; None: there is none
+    floor_m: "Optional[float]"  # height of the main level floor; None: there is none
+    free_place_m: "Optional[list[float]]"  # the middle of the widest place on it where nothing stands, x, y, z; None: there is none
     free_radius_m: float  # of that place; 0: there is none
-    notes: list  # of str: what is not as it was parsed, such as bodies that were cut to half
+    notes: "list[str]"  # what is not as it was parsed, such as bodies that were cut to half
 
     def __repr__(self):
         fixed = sum(body.fixed for body in self.bodies)

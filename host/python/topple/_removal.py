@@ -7,8 +7,8 @@ from ._arrays import number, usage
 
 class RemovalOrder(NamedTuple):
     """Ids of all objects but the ground, in the order in which they can be taken away. What nothing was seen to hold is in it, too."""
-    layers: list  # of lists of ids, ascending: what carries nothing once the layers before it are gone
-    entangled: list  # ids of what is left then: pieces that carry each other, perhaps of one thing, and all that carries such
+    layers: "list[list[int]]"  # of ids, ascending: what carries nothing once the layers before it are gone
+    entangled: "list[int]"  # ids of what is left then: pieces that carry each other, perhaps of one thing, and all that carries such
 
     def __repr__(self):
         left = '' if not self.entangled else f'; objects {", ".join(map(str, self.entangled))} carry each other, or what does, and have no order'

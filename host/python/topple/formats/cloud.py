@@ -66,6 +66,13 @@ def write_cloud(path, cloud, source):
         records.tofile(out)
 
 
+def kept(cloud, path, folder, options):
+    """What convert() of a format returns of a cloud, which it writes into the folder. path: the scan."""
+    out = folder / f'points{options.ending}'
+    write_cloud(out, cloud, path)
+    return out, cloud.notes, cloud.offset
+
+
 def _ply_header(cloud):
     lines = ['ply', 'format binary_little_endian 1.0', f'element vertex {len(cloud.points)}',
              *(f'property float {name}' for name in 'xyz')]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .cloud import Cloud, write_cloud
+from .cloud import Cloud, kept
 from .errors import reading, wrong
 from .frames import Camera, FrameFolder, pose
 from .scan_folder import ScanFolder, regular
@@ -238,7 +238,4 @@ def convert(path, folder, options):
         file = _of_model(scan, _sparse(path), 'points3D')
     else:
         file = read_file(path)
-    cloud = points_of(file).moved_near(options.unit_m)
-    out = folder / f'points{options.ending}'
-    write_cloud(out, cloud, path)
-    return out, cloud.notes, cloud.offset
+    return kept(points_of(file).moved_near(options.unit_m), path, folder, options)

@@ -2,7 +2,7 @@
 """E57 of laser scanners (pye57): all scans of the file in its frame, with colours, and the scanners' places where it tells them."""
 import numpy as np
 
-from .cloud import Cloud, write_cloud
+from .cloud import Cloud, kept
 from .errors import needs, reading, wrong
 from .limits import Budget
 
@@ -65,7 +65,4 @@ def read(path, options):
 
 
 def convert(path, folder, options):
-    cloud = read(path, options)
-    out = folder / f'points{options.ending}'
-    write_cloud(out, cloud, path)
-    return out, cloud.notes, cloud.offset
+    return kept(read(path, options), path, folder, options)

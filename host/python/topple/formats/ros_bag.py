@@ -10,7 +10,7 @@ from collections import Counter
 import numpy as np
 
 from . import images
-from .cloud import Cloud, write_cloud
+from .cloud import Cloud, kept
 from .errors import needs, reading, wrong
 from .frames import Camera, FrameFolder, png
 from .limits import Budget
@@ -359,6 +359,4 @@ def convert(path, folder, options):
             raise wrong(path, f'has no depth image (16UC1, 32FC1, compressedDepth) and no PointCloud2, but {", ".join(kinds)[:300] or "nothing"}')
         topic = _most(clouds, options.topic, path, 'PointCloud2')
         cloud = _cloud(bag, topic, sorted(set(clouds) - {topic})).moved_near(options.unit_m)
-    out = folder / f'points{options.ending}'
-    write_cloud(out, cloud, path)
-    return out, cloud.notes, cloud.offset
+    return kept(cloud, path, folder, options)
