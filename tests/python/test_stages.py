@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import topple
-from exported import Exported
+from others import Exported
 from topple import stages
 
 GRAVITY = 9.80665

@@ -1,4 +1,19 @@
 # SPDX-License-Identifier: MIT
+import contextlib
+
+import pytest
+
+import topple
+
+
+@contextlib.contextmanager
+def wrong(kind, words=None):
+    """What is done within raises a topple.Error of this kind, whose message has the words, a regular expression."""
+    with pytest.raises(topple.Error, match=words) as raised:
+        yield
+    assert raised.value.kind == kind
+
+
 class Exported:
     """An array of another library's, which has __dlpack__ alone."""
 
