@@ -40,7 +40,8 @@ struct NumberOption {
 };
 
 inline constexpr NumberOption number_options[] = {
-    {"voxel_m", &ParseOptions::voxel_m, &topple_options::voxel_m, least_voxel_m, largest_voxel_m, true},
+    {"voxel_m", &ParseOptions::voxel_m, &topple_options::voxel_m, least_voxel_m, largest_voxel_m,
+     true},
     {"unit_m", &ParseOptions::unit_m, &topple_options::unit_m, 1e-6, 1e6},
     {"density_kg_m3", &ParseOptions::density_kg_m3, &topple_options::density_kg_m3, 0, 30000},
     {"contents_kg_m3", &ParseOptions::contents_kg_m3, &topple_options::contents_kg_m3, 0, 30000,

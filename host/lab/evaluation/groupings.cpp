@@ -14,8 +14,8 @@
 #include "lab/evaluation/tables.h"
 #include "lab/evaluation/text.h"
 #include "lab/temporary_folder.h"
-#include "points/ingest.h"
-#include "solids/solid_stage.h"
+#include "points/observation.h"
+#include "solids/find_solids.h"
 
 namespace topple::evaluation {
 namespace {
@@ -118,7 +118,7 @@ RoomParts scan_parts(const RoomOptions& options) {
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options.parse);
     device::Device& device = *options.parse.device;
-    const Ingested input = ingest(device, folder.path(), options.parse);
+    const Observation input = observe(device, folder.path(), options.parse);
     const auto [geometry, voxels] =
         find_solids(device, input, options.parse.voxel_m, options.parse, stage);
     ScenePoints points;

@@ -20,7 +20,7 @@ double log_ratio(double part, double whole) {
 }  // namespace
 
 std::vector<JointFeatures> features_of(const graph::ContactGraph& contacts,
-                                       std::span<const physics::Body> bodies,
+                                       std::span<const physics::MassProperties> bodies,
                                        const std::vector<bool>& shell) {
     const auto carries = [&](std::int32_t a, std::int32_t b) {
         return std::ranges::any_of(contacts.carriers_of(b),

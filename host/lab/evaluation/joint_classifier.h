@@ -35,7 +35,7 @@ inline constexpr JointWeights fitted_joint_weights{-0.2928, 0.5854, 1.2190,  -1.
 
 // Of each pair of the contact graph, in its order. shell: by primitive.
 std::vector<JointFeatures> features_of(const graph::ContactGraph& contacts,
-                                       std::span<const physics::Body> bodies,
+                                       std::span<const physics::MassProperties> bodies,
                                        const std::vector<bool>& shell);
 
 double probability(const JointWeights& weights, const JointFeatures& features);
