@@ -8,6 +8,8 @@
 
 #include "solids/coherence.h"
 #include "solids/combine.h"
+#include "solids/matching.h"
+#include "solids/place.h"
 
 namespace topple::solids {
 namespace {
@@ -103,15 +105,13 @@ std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells&
 // Voxels of one primitive in which another was seen, too.
 std::vector<BorderVoxel> shared(const SolidCells& cells, const SeenCells& seen) {
     std::vector<BorderVoxel> out;
-    std::size_t n = 0;
-    for (std::size_t m = 0; m < seen.size(); ++m) {
-        const std::tuple at(seen.i[m], seen.j[m], seen.k[m]);
-        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        if (n == cells.size()) break;
-        if (std::tie(cells.i[n], cells.j[n], cells.k[n]) != at) continue;
-        if (cells.primitive[n] >= 0 && cells.primitive[n] != seen.primitive[m])
-            out.push_back({seen.i[m], seen.j[m], seen.k[m], seen.primitive[m]});
-    }
+    each_match(
+        seen.size(), [&](std::size_t m) { return place_of(seen, m); }, cells.size(),
+        [&](std::size_t n) { return place_of(cells, n); },
+        [&](std::size_t m, std::size_t n) {
+            if (cells.primitive[n] >= 0 && cells.primitive[n] != seen.primitive[m])
+                out.push_back({seen.i[m], seen.j[m], seen.k[m], seen.primitive[m]});
+        });
     return out;
 }
 
@@ -318,19 +318,13 @@ void add_cell(const BorderVoxel& c, const Combination& sum, BoundaryCells& out) 
 }  // namespace
 
 std::vector<std::size_t> next_cells(const SolidCells& c, std::size_t axis, std::int32_t furthest) {
-    const auto place = [&](std::size_t n) {
-        return std::array<std::int32_t, 3>{c.i[n], c.j[n], c.k[n]};
-    };
+    const auto place = [&](std::size_t n) { return place_of(c, n); };
     std::vector<std::size_t> out(c.size(), no_cell);
     for (std::int32_t step = 1; step <= furthest; ++step) {
-        std::size_t m = 0;
-        for (std::size_t n = 0; n < c.size(); ++n) {
-            auto wanted = place(n);
-            wanted[axis] += step;
-            while (m < c.size() && place(m) < wanted) ++m;
-            if (m == c.size()) break;
-            if (out[n] == no_cell && place(m) == wanted) out[n] = m;
-        }
+        const auto stepped = [&](std::size_t n) { return moved(place(n), axis, step); };
+        each_match(c.size(), stepped, c.size(), place, [&](std::size_t n, std::size_t m) {
+            if (out[n] == no_cell) out[n] = m;
+        });
     }
     return out;
 }

@@ -5,18 +5,10 @@
 
 #include "core/union_find.h"
 #include "solids/boundary.h"
+#include "solids/matching.h"
+#include "solids/place.h"
 
 namespace topple::solids {
-namespace {
-
-using Place = std::array<std::int32_t, 3>;
-
-Place sum_of(const Place& a, const Place& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
-}  // namespace
-
 std::vector<bool> air_by_patches(const SolidCells& cells, std::span<const BorderVoxel> voxels,
                                  std::span<const Combination> sums) {
     std::vector<bool> air(cells.size(), false);
@@ -73,29 +65,23 @@ std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const BorderVo
         if (!voxels[c].own && !sums[c].nothing) beyond.push_back(c);
     UnionFind pieces(beyond.size());
     for (std::size_t axis = 0; axis < axes; ++axis) {
-        std::size_t m = 0;
-        for (std::size_t n = 0; n < beyond.size(); ++n) {
-            const std::int32_t primitive = voxels[beyond[n]].primitive;
-            const std::pair wanted(sum_of(place(beyond[n]), ways[axis]), primitive);
-            const auto at = [&] {
-                return std::pair(place(beyond[m]), voxels[beyond[m]].primitive);
-            };
-            while (m < beyond.size() && at() < wanted) ++m;
-            if (m == beyond.size()) break;
-            if (at() == wanted) pieces.join(n, m);
-        }
+        const auto key = [&](std::size_t n, const Place& way) {
+            return std::pair(sum_of(place(beyond[n]), way), voxels[beyond[n]].primitive);
+        };
+        each_match(
+            beyond.size(), [&](std::size_t n) { return key(n, ways[axis]); }, beyond.size(),
+            [&](std::size_t n) { return key(n, {}); },
+            [&](std::size_t n, std::size_t m) { pieces.join(n, m); });
     }
     std::vector<bool> hangs(beyond.size(), false);  // by the root of its piece
     for (const Place& way : ways) {
-        std::size_t cell = 0;
-        for (std::size_t n = 0; n < beyond.size(); ++n) {
-            const Place at = sum_of(place(beyond[n]), way);
-            const auto here = [&] { return Place{cells.i[cell], cells.j[cell], cells.k[cell]}; };
-            while (cell < cells.size() && here() < at) ++cell;
-            if (cell == cells.size()) break;
-            if (here() == at && !air[cell] && cells.primitive[cell] == voxels[beyond[n]].primitive)
-                hangs[pieces.root(n)] = true;
-        }
+        each_match(
+            beyond.size(), [&](std::size_t n) { return sum_of(place(beyond[n]), way); },
+            cells.size(), [&](std::size_t n) { return place_of(cells, n); },
+            [&](std::size_t n, std::size_t cell) {
+                if (!air[cell] && cells.primitive[cell] == voxels[beyond[n]].primitive)
+                    hangs[pieces.root(n)] = true;
+            });
     }
     std::vector<bool> out(voxels.size(), false);
     for (std::size_t c = 0; c < voxels.size(); ++c) out[c] = !voxels[c].own;

@@ -23,12 +23,12 @@ Eigen::Vector3d normal_of(const SurfacePatch& patch, const Eigen::Vector3d& p) {
 // Those of fewer points were asked before, and may be dropped.
 struct Explainer {
     std::span<const SurfacePatch> patches;
-    const PointsByLabel& members;  // of each patch
+    const Rows<std::uint32_t>& members;  // of each patch
 
     std::int32_t operator()(const Eigen::Vector3d& p, std::int32_t own,
                             std::span<const std::int32_t> near) const {
         const auto rank = [&](std::int32_t patch) {
-            return std::pair(members.of(static_cast<std::size_t>(patch)).size(), patch);
+            return std::pair(members[static_cast<std::size_t>(patch)].size(), patch);
         };
         const auto mine = rank(own);
         return explaining(patches, near, p, [&](std::int32_t other) { return rank(other) > mine; });
@@ -63,14 +63,14 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
     constexpr double explained = 0.8;       // share of its points that makes a patch none
     constexpr std::size_t looked_at = 200;  // of them
     constexpr std::size_t much_larger = 4;
-    const PointsByLabel members(patch_of_point, patches.size());
+    const auto members = points_by_label(patch_of_point, patches.size());
     const PatchMap map(cloud, patch_of_point, patch_of_point, axes, cell_m, threads);
     const auto point = [&](std::size_t n) {
         return rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
     };
     std::vector<std::int32_t> primitive(patches.size(), -1);
     for (std::size_t p = 0; p < patches.size(); ++p)
-        for (const std::uint32_t n : members.of(p))
+        for (const std::uint32_t n : members[p])
             primitive[p] = std::max(primitive[p], primitive_of_point[n]);
     const Explainer explain{patches, members};
     // A patch asks only those of more points, each of which stands until its own turn: in whatever
@@ -80,7 +80,7 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
         std::vector<Beside> beside;
         for (std::uint64_t p = from; p < to; ++p) {
             const auto own = static_cast<std::int32_t>(p);
-            const std::span<const std::uint32_t> mine = members.of(p);
+            const std::span<const std::uint32_t> mine = members[p];
             std::size_t looked = 0, met = 0;
             beside.clear();  // much larger patches: points near them
             Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -93,7 +93,7 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
                 met += explain(at, own, near) >= 0;
                 for (const std::int32_t other : near) {
                     const auto o = static_cast<std::size_t>(other);
-                    if (members.of(o).size() <= much_larger * mine.size() ||
+                    if (members[o].size() <= much_larger * mine.size() ||
                         !(std::abs(distance_to(patches[o], at)) < cell_m / 2))
                         continue;
                     const auto known = std::ranges::find(beside, other, &Beside::first);

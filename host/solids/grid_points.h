@@ -5,10 +5,9 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <numeric>
 #include <span>
-#include <vector>
 
+#include "solids/rows.h"
 #include "topple/cloud_view.h"
 #include "topple/input.h"
 
@@ -25,24 +24,13 @@ inline Eigen::Vector3d rotated(const std::array<Vec3, 3>& axes, double x, double
 }
 
 // The points of each label, ascending; -1 is none.
-struct PointsByLabel {
-    std::vector<std::size_t> first;  // CSR over the labels, and the end
-    std::vector<std::uint32_t> order;
-
-    PointsByLabel(std::span<const std::int32_t> label, std::size_t labels) : first(labels + 1, 0) {
-        for (const std::int32_t l : label)
-            if (l >= 0) ++first[static_cast<std::size_t>(l) + 1];
-        std::partial_sum(first.begin(), first.end(), first.begin());
-        order.resize(first.back());
-        std::vector<std::size_t> at(first.begin(), first.end() - 1);
-        for (std::size_t n = 0; n < label.size(); ++n)
-            if (label[n] >= 0)
-                order[at[static_cast<std::size_t>(label[n])]++] = static_cast<std::uint32_t>(n);
-    }
-    std::span<const std::uint32_t> of(std::size_t label) const {
-        return std::span(order).subspan(first[label], first[label + 1] - first[label]);
-    }
-};
+inline Rows<std::uint32_t> points_by_label(std::span<const std::int32_t> label,
+                                           std::size_t labels) {
+    return {labels, [&](const auto& add) {
+                for (std::uint32_t n = 0; n < label.size(); ++n)
+                    if (label[n] >= 0) add(static_cast<std::size_t>(label[n]), n);
+            }};
+}
 
 // Every so many of the points, the same ones in whatever order they come.
 inline bool is_chosen(const CloudView& cloud, std::size_t n, std::size_t step) {

@@ -7,12 +7,11 @@
 #include <tuple>
 
 #include "solids/boundary.h"
+#include "solids/place.h"
 #include "solids/sort_unique.h"
 
 namespace topple::solids {
 namespace {
-
-using Place = std::array<std::int32_t, 3>;
 
 // How far, in voxels, a solid's last voxel may end from the patch at which it ends indeed.
 constexpr double reach = 1.5;
@@ -38,10 +37,6 @@ struct Box {
         return true;
     }
 };
-
-Place place(const SolidCells& c, std::size_t n) {
-    return {c.i[n], c.j[n], c.k[n]};
-}
 
 // A face of a cell that is the border of its primitive.
 struct Face {
@@ -131,8 +126,8 @@ class MateFinder {
             if (p < 0) continue;
             const bool faced = (faced_[n] >> direction & 1) != 0;
             const std::size_t m = beside_of[n];
-            const bool adjacent = m != no_cell && std::abs(std::int64_t{place(cells_, m)[axis]} -
-                                                           place(cells_, n)[axis]) == 1;
+            const bool adjacent = m != no_cell && std::abs(std::int64_t{place_of(cells_, m)[axis]} -
+                                                           place_of(cells_, n)[axis]) == 1;
             const std::int32_t other = m == no_cell ? -1 : cells_.primitive[m];
             // A face that was seen is where it was seen, but it may pass a voxel of another.
             if ((other == p && adjacent) || (faced && (other < 0 || other == p))) continue;
@@ -140,7 +135,7 @@ class MateFinder {
             side.faces.push_back({n, other == p ? -1 : other, faced});
             if (other >= 0 && other != p && (side.others.empty() || side.others.back() != other))
                 side.others.push_back(other);
-            side.box.add(place(cells_, n));
+            side.box.add(place_of(cells_, n));
         }
         for (std::int32_t p = 0; p < primitives_; ++p) {
             Side& side = sides[static_cast<std::size_t>(p)];
@@ -203,10 +198,9 @@ class MateFinder {
                std::vector<Mate>& mates) const {
         const double h = cells_.voxel_m;
         const SurfacePatch& patch = patches_[c.patch];
-        const Place from = place(cells_, n);
+        const Place from = place_of(cells_, n);
         for (std::int32_t step = -2; step <= 2; ++step) {
-            Place at = from;
-            at[axis] += way * step;
+            const Place at = moved(from, axis, way * step);
             const Vec3 middle{(at[0] + 0.5) * h, (at[1] + 0.5) * h, (at[2] + 0.5) * h};
             const double d = (c.outside ? -1 : 1) * patch.distance(middle);
             const double half = reach_of(patch.gradient(middle), h);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/vectors.h"
+#include "solids/place.h"
 
 namespace topple::solids {
 namespace {
@@ -33,8 +34,6 @@ void add(std::int32_t object, std::int32_t primitive, std::uint32_t share, bool 
     found->share += share;
     found->cell = found->cell || cell;
 }
-
-using Place = std::array<std::int32_t, 3>;
 
 // Finds what lies behind cells of which a patch leaves hardly anything.
 class LayersBehind {
@@ -93,10 +92,6 @@ class LayersBehind {
         std::size_t axis;
         std::int32_t sign;
     };
-    static Place moved(Place at, std::size_t axis, std::int32_t by) {
-        at[axis] += by;
-        return at;
-    }
     static ObjectVoxel* find_at(std::span<ObjectVoxel> voxels, const Place& at) {
         const auto found = std::ranges::lower_bound(voxels, at, {}, &ObjectVoxel::at);
         return found != voxels.end() && found->at == at ? &*found : nullptr;
@@ -166,9 +161,7 @@ class LayersBehind {
         return Beside{d, g};
     }
     bool is_cell(const Place& at) const {
-        const auto place = [&](std::size_t n) {
-            return Place{cells_.i[n], cells_.j[n], cells_.k[n]};
-        };
+        const auto place = [&](std::size_t n) { return place_of(cells_, n); };
         std::size_t low = 0, high = cells_.size();
         while (low < high) {
             const std::size_t middle = (low + high) / 2;
@@ -210,8 +203,8 @@ std::vector<ObjectVoxel> object_voxels(const SolidCells& cells, const BoundaryCe
     std::vector<Share> here;
     std::size_t n = 0, m = 0;
     while (n < cells.size() || m < b.size()) {
-        const auto cell = [&] { return std::array{cells.i[n], cells.j[n], cells.k[n]}; };
-        const auto part = [&] { return std::array{b.i[m], b.j[m], b.k[m]}; };
+        const auto cell = [&] { return place_of(cells, n); };
+        const auto part = [&] { return place_of(b, m); };
         const auto at = n == cells.size() ? part()
                         : m == b.size()   ? cell()
                                           : std::min(cell(), part());

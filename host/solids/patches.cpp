@@ -191,12 +191,12 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                                       std::span<const geometry::Region> regions,
                                       std::span<const std::int32_t> region_of_point,
                                       const std::array<Vec3, 3>& axes, ThreadPool& threads) {
-    const PointsByLabel members(region_of_point, regions.size());
+    const auto members = points_by_label(region_of_point, regions.size());
     std::vector<SurfacePatch> out(regions.size());
     threads.each(regions.size(), 16, [&](std::size_t r) {
-        const std::size_t step = members.of(r).size() / most_points + 1;
+        const std::size_t step = members[r].size() / most_points + 1;
         Points points;
-        for (const std::uint32_t n : members.of(r)) {
+        for (const std::uint32_t n : members[r]) {
             if (is_chosen(cloud, n, step))
                 points.push_back(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]));
         }

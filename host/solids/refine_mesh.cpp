@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
-#include <utility>
+#include <tuple>
 
 #include "core/vectors.h"
 #include "solids/meeting_point.h"
@@ -20,7 +19,7 @@ constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 struct Edge {
     std::uint32_t low, high, triangle;
     std::uint8_t slot;
-    auto order() const { return std::pair(high, triangle); }
+    auto order() const { return std::tuple(low, high, triangle); }
 };
 
 bool is_curved(const Facet& facet, std::span<const SurfacePatch> patches) {
@@ -34,24 +33,14 @@ std::vector<Edge> curved_edges(const SurfaceMesh& mesh, std::span<const SurfaceP
         if (!is_curved(mesh.facet[t], patches)) continue;
         for (const std::uint32_t v : mesh.triangle[t]) at_curve[v] = true;
     }
-    // In rows by the lower vertex, of few edges each.
-    std::vector<std::uint32_t> row(mesh.vertex.size() + 1, 0);
-    const auto each = [&](const auto& visit) {
-        for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
-            for (std::uint8_t n = 0; n < 3; ++n) {
-                const std::uint32_t a = mesh.triangle[t][n], b = mesh.triangle[t][(n + 1) % 3];
-                if (at_curve[a] && at_curve[b]) visit(Edge{std::min(a, b), std::max(a, b), t, n});
-            }
+    std::vector<Edge> out;
+    for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
+        for (std::uint8_t n = 0; n < 3; ++n) {
+            const std::uint32_t a = mesh.triangle[t][n], b = mesh.triangle[t][(n + 1) % 3];
+            if (at_curve[a] && at_curve[b]) out.push_back({std::min(a, b), std::max(a, b), t, n});
         }
-    };
-    each([&](const Edge& edge) { ++row[edge.low + 1]; });
-    std::partial_sum(row.begin(), row.end(), row.begin());
-    std::vector<Edge> out(row.back());
-    std::vector<std::uint32_t> next(row.begin(), row.end() - 1);
-    each([&](const Edge& edge) { out[next[edge.low]++] = edge; });
-    for (std::size_t v = 0; v + 1 < row.size(); ++v) {
-        std::ranges::sort(std::span(out).subspan(row[v], row[v + 1] - row[v]), {}, &Edge::order);
     }
+    std::ranges::sort(out, {}, &Edge::order);
     return out;
 }
 

@@ -73,14 +73,14 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
                      double voxel_m, ThreadPool& threads) {
     std::int32_t patches = 0;
     for (const std::int32_t p : patch_of_point) patches = std::max(patches, p + 1);
-    const PointsByLabel members(patch_of_point, static_cast<std::size_t>(patches));
+    const auto members = points_by_label(patch_of_point, static_cast<std::size_t>(patches));
     // Patch by patch: there are many fewer means to sort than points.
     std::vector<std::vector<SeenMean>> of_patch(static_cast<std::size_t>(patches));
     threads.run(of_patch.size(), 4, [&](std::uint64_t from, std::uint64_t to) {
         std::vector<SeenPoint> places;
         for (std::uint64_t patch = from; patch < to; ++patch) {
             places.clear();
-            for (const std::uint32_t n : members.of(patch)) {
+            for (const std::uint32_t n : members[patch]) {
                 if (primitive_of_point[n] < 0) continue;
                 const Eigen::Vector3d p = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
                 const auto cell = [&](double v) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/vectors.h"
+#include "solids/rows.h"
 
 namespace topple::solids {
 namespace {
@@ -57,37 +58,28 @@ Vec3 normal_of(const std::vector<Corner>& corners, std::size_t group) {
     return dot(sum, sum) > least ? unit(sum) : any;
 }
 
-// The corners at each vertex, 3 times the triangle's number plus the slot, in rows.
-struct VertexCorners {
-    std::vector<std::size_t> first, at;
-    explicit VertexCorners(const SurfaceMesh& mesh)
-        : first(mesh.vertex.size() + 1, 0), at(3 * mesh.triangle.size()) {
-        for (const auto& t : mesh.triangle)
-            for (const std::uint32_t v : t) ++first[v + 1];
-        for (std::size_t v = 0; v < mesh.vertex.size(); ++v) first[v + 1] += first[v];
-        std::vector<std::size_t> next(first.begin(), first.end() - 1);
-        for (std::size_t n = 0; n < at.size(); ++n) at[next[mesh.triangle[n / 3][n % 3]]++] = n;
-    }
-};
-
 }  // namespace
 
 ShadedMesh shaded(const SurfaceMesh& mesh, std::span<const SurfacePatch> patches) {
-    const VertexCorners rows(mesh);
+    // Of each vertex, 3 times the triangle's number plus the slot.
+    const Rows<std::size_t> corners_at(mesh.vertex.size(), [&](const auto& add) {
+        for (std::size_t n = 0; n < 3 * mesh.triangle.size(); ++n)
+            add(mesh.triangle[n / 3][n % 3], n);
+    });
     ShadedMesh out;
     out.triangle.resize(mesh.triangle.size());
     std::vector<Corner> corners;
     std::vector<std::uint32_t> number;
     for (std::uint32_t v = 0; v < mesh.vertex.size(); ++v) {
         corners.clear();
-        for (std::size_t n = rows.first[v]; n < rows.first[v + 1]; ++n) {
-            const std::size_t t = rows.at[n] / 3;
+        for (const std::size_t n : corners_at[v]) {
+            const std::size_t t = n / 3;
             const auto& [a, b, c] = mesh.triangle[t];
             const Vec3& p = mesh.vertex[a];
             const Vec3 across = cross(minus(mesh.vertex[b], p), minus(mesh.vertex[c], p));
             const bool known = mesh.facet[t].patch != no_patch;
             const Vec3 normal = known ? outwards(mesh.facet[t], patches, mesh.vertex[v]) : across;
-            corners.push_back({t, rows.at[n] % 3, unit(normal), length(across), known, 0});
+            corners.push_back({t, n % 3, unit(normal), length(across), known, 0});
         }
         group(corners);
         number.assign(corners.size(), 0);

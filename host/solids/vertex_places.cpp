@@ -7,6 +7,8 @@
 
 #include "core/vectors.h"
 #include "solids/meeting_point.h"
+#include "solids/rows.h"
+#include "solids/sort_unique.h"
 
 namespace topple::solids {
 namespace {
@@ -18,29 +20,6 @@ constexpr double farthest_unknown = 0.4, farthest_thin = 0.15;
 constexpr double place_slack = 0.002;     // what is no further outside is not
 constexpr std::uint64_t chunk = 1 << 11;  // vertices handed to a thread at once
 
-// The faces at each vertex, in rows.
-struct VertexFaces {
-    std::vector<std::uint32_t> first, face;
-    explicit VertexFaces(const BlockSurface& surface)
-        : first(surface.corner.size() + 1, 0), face(4 * surface.face.size()) {
-        for (const VoxelFace& f : surface.face)
-            for (const std::uint32_t v : f.vertex) ++first[v + 1];
-        for (std::size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
-        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-        for (std::uint32_t f = 0; f < surface.face.size(); ++f)
-            for (const std::uint32_t v : surface.face[f].vertex) face[next[v]++] = f;
-    }
-    std::span<const std::uint32_t> of(std::size_t v) const {
-        return std::span(face).subspan(first[v], first[v + 1] - first[v]);
-    }
-};
-
-template <class T>
-void make_unique(std::vector<T>& values) {
-    std::ranges::sort(values);
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
 class Places {
   public:
     Places(std::span<const ObjectVoxel> voxels, const BlockSurface& surface,
@@ -50,7 +29,11 @@ class Places {
           surface_(surface),
           facet_(facet),
           entries_(entries),
-          faces_(surface),
+          faces_(surface.corner.size(),
+                 [&](const auto& add) {
+                     for (std::uint32_t f = 0; f < surface.face.size(); ++f)
+                         for (const std::uint32_t v : surface.face[f].vertex) add(v, f);
+                 }),
           patches_(patches),
           h_(entries.voxel_m()),
           known_(surface.corner.size()),
@@ -88,7 +71,7 @@ class Places {
         s.of.clear();
         s.around.clear();
         known_[v] = true;
-        for (const std::uint32_t f : faces_.of(v)) {
+        for (const std::uint32_t f : faces_[v]) {
             if (facet_[f].patch == no_patch)
                 known_[v] = false;
             else
@@ -97,9 +80,9 @@ class Places {
             if (surface_.face[f].beyond != no_voxel) s.around.push_back(surface_.face[f].beyond);
         }
         if (s.of.empty()) return base;
-        make_unique(s.of);
+        sort_unique(s.of);
         const Vec3 met = s.meet(s.of, base, corner(v));
-        make_unique(s.around);
+        sort_unique(s.around);
         return on_solid(met, s.around) ? met : cut(met, base, corner(v), s);
     }
 
@@ -126,7 +109,7 @@ class Places {
     Vec3 cut(const Vec3& met, const Vec3& base, const Vec3& corner, Scratch& s) const {
         s.others.clear();
         for (const std::uint32_t n : s.around) entries_.add_patches(voxels_[n], s.others);
-        make_unique(s.others);
+        sort_unique(s.others);
         Vec3 best = met;
         double least = h_;
         const auto attempt = [&] {
@@ -173,7 +156,7 @@ class Places {
     };
     Vec3 reach_of(std::uint32_t v) const {
         Vec3 out{farthest_unknown * h_, farthest_unknown * h_, farthest_unknown * h_};
-        for (const std::uint32_t f : faces_.of(v)) {
+        for (const std::uint32_t f : faces_[v]) {
             const VoxelFace& face = surface_.face[f];
             const unsigned both = 3U << 2 * face.axis();
             if ((open_[face.voxel] & both) == both) out[face.axis()] = farthest_thin * h_;
@@ -217,14 +200,14 @@ class Places {
                          std::vector<std::uint32_t>& others,
                          std::vector<std::uint32_t>& found) const {
         found.clear();
-        for (const std::uint32_t f : faces_.of(v)) {
+        for (const std::uint32_t f : faces_[v]) {
             const auto& vertex = surface_.face[f].vertex;
             const auto slot =
                 static_cast<std::size_t>(std::ranges::find(vertex, v) - vertex.begin());
             found.push_back(vertex[(slot + 1) % 4]);
             found.push_back(vertex[(slot + 3) % 4]);
         }
-        make_unique(found);
+        sort_unique(found);
         find_patches(v, own);
         if (own.empty()) return;
         std::erase_if(found, [&](std::uint32_t u) {
@@ -234,9 +217,9 @@ class Places {
     }
     void find_patches(std::uint32_t v, std::vector<std::uint32_t>& out) const {
         out.clear();
-        for (const std::uint32_t f : faces_.of(v))
+        for (const std::uint32_t f : faces_[v])
             if (facet_[f].patch != no_patch) out.push_back(facet_[f].patch);
-        make_unique(out);
+        sort_unique(out);
     }
     Vec3 moved(const Beside& b, double share, const std::vector<Vec3>& at) const {
         Vec3 sum{};
@@ -256,7 +239,7 @@ class Places {
     const BlockSurface& surface_;
     std::span<const Facet> facet_;
     const ObjectEntries& entries_;
-    VertexFaces faces_;
+    Rows<std::uint32_t> faces_;  // at each vertex
     std::span<const SurfacePatch> patches_;
     double h_;
     std::vector<std::uint8_t> known_;  // of each vertex: each of its faces has a patch

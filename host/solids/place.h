@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace topple::solids {
+
+// Of a voxel, or of a corner of voxels: (i, j, k).
+using Place = std::array<std::int32_t, 3>;
+
+constexpr Place sum_of(const Place& a, const Place& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+constexpr Place moved(Place at, std::size_t axis, std::int32_t by) {
+    at[axis] += by;
+    return at;
+}
+// Of the n-th of what has its places in arrays i, j and k.
+constexpr Place place_of(const auto& all, std::size_t n) {
+    return {all.i[n], all.j[n], all.k[n]};
+}
+
+}  // namespace topple::solids
