@@ -7,7 +7,6 @@
 
 #include "core/vectors.h"
 #include "solids/error_quadric.h"
-#include "solids/mesh_pieces.h"
 #include "solids/vertex_rings.h"
 
 namespace topple::solids {
@@ -35,16 +34,8 @@ class Simplifier {
         pool.each(around_.size(), chunk,
                   [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v), normal); });
     }
-    std::vector<ErrorQuadric>& quadrics() { return quadric_; }
-    // Of each vertex, whether it was asked in vain, could be merged into all its neighbours, and
-    // nothing that counts has changed since: it need not be asked again.
-    std::vector<std::uint8_t>& settled() { return settled_; }
 
-    // Vertices that are `fixed` stay, and nothing is merged into them: there is more around them
-    // than the mesh has. Empty: none is.
-    void run(std::span<const std::uint8_t> fixed = {}) {
-        fixed_ = fixed;
-        settled_.resize(around_.size(), 0);
+    void run() {
         found_in_.assign(around_.size(), 0);
         // A vertex that can't go is asked again once something around it has changed.
         std::vector<bool> asked(around_.size(), false);
@@ -56,33 +47,25 @@ class Simplifier {
                 // Changes of one round lie apart, or long fans would arise.
                 if (around_[v].empty() || asked[v] || changed[v] == round) continue;
                 asked[v] = true;
-                if (is_fixed(v) || settled_[v] != 0) continue;
-                if (!remove(v)) {
-                    settled_[v] = std::ranges::none_of(
-                        neighbours_, [&](std::uint32_t n) { return is_fixed(n); });
-                    continue;
-                }
+                if (!remove(v)) continue;
                 any = true;
                 for (const std::uint32_t n : neighbours_) {
                     asked[n] = false;
                     changed[n] = round;
-                    // Who could be merged into it looks at the triangles around it.
-                    for (const std::uint32_t t : around_[n])
-                        for (const std::uint32_t w : mesh_.triangle[t]) settled_[w] = 0;
                 }
             }
         }
     }
 
-    // Takes what is no longer used out of the mesh. Returns the vertices that stay, ascending.
-    std::vector<std::uint32_t> compact() {
-        std::vector<std::uint32_t> number(mesh_.vertex.size()), kept;
+    // Takes what is no longer used out of the mesh.
+    void compact() {
+        std::vector<std::uint32_t> number(mesh_.vertex.size());
+        std::uint32_t vertices = 0;
         for (std::uint32_t v = 0; v < around_.size(); ++v) {
             if (around_[v].empty()) continue;
-            number[v] = static_cast<std::uint32_t>(kept.size());
-            mesh_.vertex[kept.size()] = mesh_.vertex[v];
-            mesh_.corner[kept.size()] = mesh_.corner[v];
-            kept.push_back(v);
+            mesh_.vertex[vertices] = mesh_.vertex[v];
+            mesh_.corner[vertices] = mesh_.corner[v];
+            number[v] = vertices++;
         }
         std::size_t triangles = 0;
         for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
@@ -91,16 +74,13 @@ class Simplifier {
             mesh_.triangle[triangles] = {number[a], number[b], number[c]};
             mesh_.facet[triangles++] = mesh_.facet[t];
         }
-        mesh_.vertex.resize(kept.size());
-        mesh_.corner.resize(kept.size());
+        mesh_.vertex.resize(vertices);
+        mesh_.corner.resize(vertices);
         mesh_.triangle.resize(triangles);
         mesh_.facet.resize(triangles);
-        return kept;
     }
 
   private:
-    bool is_fixed(std::uint32_t v) const { return !fixed_.empty() && fixed_[v] != 0; }
-
     Vec3 area(const std::array<std::uint32_t, 3>& t) const {
         const Vec3& p = mesh_.vertex[t[0]];
         return cross(minus(mesh_.vertex[t[1]], p), minus(mesh_.vertex[t[2]], p));
@@ -205,7 +185,6 @@ class Simplifier {
         nearest_.clear();
         const bool bordered = is_bordered(v);
         for (const std::uint32_t u : neighbours_) {
-            if (is_fixed(u)) continue;
             // No error is less than 0, but for rounding.
             const double own = quadric_[v].at(mesh_.vertex[u]);
             if (own > 2 * most_ || own + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
@@ -279,8 +258,6 @@ class Simplifier {
     double most_, longest_;  // squared
     VertexRings around_;     // of a vertex that is gone, none
     std::vector<ErrorQuadric> quadric_;
-    std::span<const std::uint8_t> fixed_;
-    std::vector<std::uint8_t> settled_;
     std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at
     std::vector<std::uint64_t> found_in_;    // of each vertex: the last search that found it there
     std::uint64_t search_ = 0;
@@ -288,61 +265,14 @@ class Simplifier {
     std::vector<std::pair<double, std::uint32_t>> nearest_;
 };
 
-template <class T>
-void keep(std::span<const std::uint32_t> which, std::vector<T>& of) {
-    for (std::size_t n = 0; n < which.size(); ++n) of[n] = of[which[n]];
-    of.resize(which.size());
-}
-
-// Each block by itself, up to its borders.
-void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
-                     const SimplifyOptions& options, std::vector<ErrorQuadric>& quadric,
-                     std::vector<std::uint8_t>& settled, ThreadPool& pool) {
-    const MeshPieces blocks(mesh);
-    std::vector<MeshPiece> pieces(blocks.size());
-    const auto simplify_block = [&](MeshPiece& p) {
-        Simplifier simplifier(p.mesh, patches, options);
-        simplifier.quadrics().swap(p.quadric);
-        simplifier.run(p.fixed);
-        simplifier.quadrics().swap(p.quadric);
-        simplifier.settled().swap(p.settled);
-        const std::vector<std::uint32_t> kept = simplifier.compact();
-        keep(kept, p.quadric);
-        keep(kept, p.settled);
-        keep(kept, p.fixed);
-        keep(kept, p.from);
-    };
-    constexpr std::uint64_t chunk = 8;
-    pool.run(pieces.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
-        std::vector<std::uint32_t> number(mesh.vertex.size(), 0);
-        for (std::uint64_t n = first; n < last; ++n) {
-            pieces[n] = blocks.cut(n, quadric, number);
-            simplify_block(pieces[n]);
-        }
-    });
-    mesh = blocks.joined(pieces, quadric, settled);
-}
-
 }  // namespace
 
 void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
               const SimplifyOptions& options, ThreadPool& pool) {
-    constexpr std::size_t large = 20'000;  // vertices that are worth cutting apart
-    Simplifier first(mesh, patches, options);
-    first.find_quadrics(pool);
-    if (mesh.vertex.size() < large) {
-        first.run();
-        first.compact();
-        return;
-    }
-    std::vector<ErrorQuadric> quadric = std::move(first.quadrics());
-    std::vector<std::uint8_t> settled;
-    simplify_blocks(mesh, patches, options, quadric, settled, pool);
-    Simplifier rest(mesh, patches, options);
-    rest.quadrics().swap(quadric);
-    rest.settled().swap(settled);
-    rest.run();
-    rest.compact();
+    Simplifier simplifier(mesh, patches, options);
+    simplifier.find_quadrics(pool);
+    simplifier.run();
+    simplifier.compact();
 }
 
 }  // namespace topple::solids

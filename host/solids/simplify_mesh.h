@@ -16,8 +16,8 @@ struct SimplifyOptions {
 
 // The same surface of fewer triangles: vertices are merged into neighbours while the error quadrics
 // (Garland and Heckbert 1997) allow it. Those that stay keep their places, so that edges stay sharp
-// and corners where they are; the mesh stays closed, and borders between primitives stay. Large
-// meshes go in blocks first, and then as a whole. The same for any number of threads.
+// and corners where they are; the mesh stays closed, and borders between primitives stay. The same
+// for any number of threads.
 void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
               const SimplifyOptions& options, ThreadPool& pool);
 

@@ -357,13 +357,11 @@ TEST(SimplifyMesh, keeps_edges_as_short_as_it_is_told_to) {
             EXPECT_LE(length(minus(mesh.vertex[t[n]], mesh.vertex[t[(n + 1) % 3]])), 3 * h);
 }
 
-// A board of several blocks, each of which is simplified by itself first.
 TEST(SimplifyMesh, is_the_same_for_any_number_of_threads) {
     const Box box{{0.3, 0.1, 0.2}, {0.9, 0.9, 0.1}, turned(0.3, 0.2, 0.1)};
     const Scanned scanned = scan({box}, h);
     const BoundaryCells boundary = boundary_of(scanned);
     const SurfaceMesh whole = mesh_of(scanned.cells, boundary);
-    ASSERT_GT(whole.vertex.size(), 20'000u) << "or it goes as one";
     SurfaceMesh first;
     for (const unsigned threads : {1u, 3u}) {
         ThreadPool some(threads);
@@ -371,7 +369,7 @@ TEST(SimplifyMesh, is_the_same_for_any_number_of_threads) {
         simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h}, some);
         expect_closed(mesh);
         EXPECT_NEAR(volume_of(mesh.vertex, mesh.triangle) / box.volume(), 1, 0.01);
-        EXPECT_LT(mesh.vertex.size(), 500u) << "as many as in one go";
+        EXPECT_LT(mesh.vertex.size(), 500u);
         if (first.vertex.empty()) first = mesh;
         EXPECT_EQ(mesh.vertex, first.vertex);
         EXPECT_EQ(mesh.triangle, first.triangle);
