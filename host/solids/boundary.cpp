@@ -26,8 +26,8 @@ class Around {
   public:
     Around(const SeenCells& seen, std::int32_t i, std::int32_t j, std::int32_t k) : seen_(seen) {
         for (std::size_t column = 0; column < 9; ++column)
-            at_[column] = first_at(i + static_cast<std::int32_t>(column / 3) - 1,
-                                   j + static_cast<std::int32_t>(column % 3) - 1, k - 1);
+            at_[column] = first_at(seen, {i + static_cast<std::int32_t>(column / 3) - 1,
+                                          j + static_cast<std::int32_t>(column % 3) - 1, k - 1});
     }
 
     // Adds up by patch, those of the primitive and those of others; both are emptied first.
@@ -54,16 +54,6 @@ class Around {
     }
 
   private:
-    std::size_t first_at(std::int32_t i, std::int32_t j, std::int32_t k) const {
-        std::size_t low = 0, high = seen_.size();
-        while (low < high) {
-            const std::size_t middle = (low + high) / 2;
-            const bool before =
-                std::tie(seen_.i[middle], seen_.j[middle], seen_.k[middle]) < std::tie(i, j, k);
-            (before ? low : high) = before ? middle + 1 : middle;
-        }
-        return low;
-    }
     void add(std::size_t m, bool here, std::vector<SeenPatch>& out) const {
         const auto patch = static_cast<std::uint32_t>(seen_.patch[m]);
         auto found = std::ranges::find(out, patch, &SeenPatch::patch);

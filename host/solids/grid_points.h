@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "solids/rows.h"
 #include "topple/cloud_view.h"
@@ -30,6 +31,14 @@ inline Rows<std::uint32_t> points_by_label(std::span<const std::int32_t> label,
                 for (std::uint32_t n = 0; n < label.size(); ++n)
                     if (label[n] >= 0) add(static_cast<std::size_t>(label[n]), n);
             }};
+}
+
+// Parts, in their order.
+template <class T>
+std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
+    std::vector<T> out;
+    for (const std::vector<T>& part : parts) out.insert(out.end(), part.begin(), part.end());
+    return out;
 }
 
 // Every so many of the points, the same ones in whatever order they come.

@@ -17,37 +17,18 @@ constexpr double settled_step = 1e-6;  // of a voxel: a step that ends the searc
 }  // namespace
 
 Vec3 MeetingPoint::operator()(std::span<const std::uint32_t> of, const Vec3& base,
-                              const Vec3& corner) {
+                              const Vec3& corner) const {
     if (of.size() == 1 && !patches_[of[0]].flat()) {
         Vec3 x = base;
         return settle(patches_[of[0]], x) && near(x, corner) ? x : base;
     }
-    const auto is_flat = [&](std::uint32_t p) { return patches_[p].flat(); };
-    Known once;
-    const bool few = of.size() <= once.of.size();
-    Known& found = few ? place_of(of) : once;
-    bool flat = found.count > 0 && std::ranges::equal(std::span(found.of).first(found.count), of);
-    if (!flat) {
-        flat = std::ranges::all_of(of, is_flat);
-        once.spread = spread(of, base);
-        if (few && flat) {
-            std::ranges::copy(of, once.of.begin());
-            once.count = of.size();
-            found = once;
-        }
-    }
-    const Spread& first = flat && few ? found.spread : once.spread;
+    const bool flat = std::ranges::all_of(of, [&](std::uint32_t p) { return patches_[p].flat(); });
+    const Spread first = spread(of, base);
     for (int rank = std::min<int>(3, static_cast<int>(of.size())); rank > 0; --rank) {
         Vec3 x = base;
         if (settle(of, rank, first, flat, x) && near(x, corner)) return x;
     }
     return base;
-}
-
-MeetingPoint::Known& MeetingPoint::place_of(std::span<const std::uint32_t> of) {
-    std::uint32_t mixed = 0;
-    for (const std::uint32_t p : of) mixed = (mixed ^ p) * 0x9e3779b1U;
-    return known_[mixed >> 24];
 }
 
 MeetingPoint::Spread MeetingPoint::spread(std::span<const std::uint32_t> of, const Vec3& x) const {

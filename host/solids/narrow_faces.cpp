@@ -88,14 +88,6 @@ struct NarrowFace {
 
 constexpr std::uint64_t point_chunk = 1 << 14;  // points handed to a thread at once
 
-// Parts in their order.
-template <class T>
-std::vector<T> strung(const std::vector<std::vector<T>>& parts) {
-    std::vector<T> out;
-    for (const std::vector<T>& part : parts) out.insert(out.end(), part.begin(), part.end());
-    return out;
-}
-
 // The cells of a primitive around which there are faces, and which, sorted; each once.
 using FaceNear = std::pair<Key, std::size_t>;
 
@@ -176,7 +168,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
             }
         }
     });
-    std::vector<Left> left = strung(parts);
+    std::vector<Left> left = joined(parts);
     std::ranges::sort(left, {}, &Left::order);
     const std::vector<std::size_t> piece = pieces_of(left);
     std::map<std::size_t, std::vector<std::size_t>> members;

@@ -161,13 +161,8 @@ class LayersBehind {
         return Beside{d, g};
     }
     bool is_cell(const Place& at) const {
-        const auto place = [&](std::size_t n) { return place_of(cells_, n); };
-        std::size_t low = 0, high = cells_.size();
-        while (low < high) {
-            const std::size_t middle = (low + high) / 2;
-            (place(middle) < at ? low : high) = place(middle) < at ? middle + 1 : middle;
-        }
-        return low < cells_.size() && place(low) == at;
+        const std::size_t n = first_at(cells_, at);
+        return n < cells_.size() && place_of(cells_, n) == at;
     }
 
     const SolidCells& cells_;

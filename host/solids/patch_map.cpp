@@ -23,14 +23,6 @@ std::uint64_t cell_key(const std::array<std::int32_t, 3>& at) {
     return out;
 }
 
-// Parts in their order.
-template <class T>
-std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
-    std::vector<T> out;
-    for (const std::vector<T>& part : parts) out.insert(out.end(), part.begin(), part.end());
-    return out;
-}
-
 }  // namespace
 
 PatchMap::PatchMap(const CloudView& cloud, std::span<const std::int32_t> patch_of_point,

@@ -22,4 +22,15 @@ constexpr Place place_of(const auto& all, std::size_t n) {
     return {all.i[n], all.j[n], all.k[n]};
 }
 
+// Of those that are sorted by place, the first one at a place or beyond.
+constexpr std::size_t first_at(const auto& all, const Place& at) {
+    std::size_t low = 0, high = all.size();
+    while (low < high) {
+        const std::size_t middle = (low + high) / 2;
+        const bool before = place_of(all, middle) < at;
+        (before ? low : high) = before ? middle + 1 : middle;
+    }
+    return low;
+}
+
 }  // namespace topple::solids

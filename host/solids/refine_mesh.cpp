@@ -50,7 +50,7 @@ using Middles = std::vector<std::array<std::uint32_t, 3>>;
 // On the patches of two triangles, where their edge is to be split; none where it is straight.
 std::optional<Vec3> bent_middle(const SurfaceMesh& mesh, const Edge& one, const Edge& other,
                                 std::span<const SurfacePatch> patches, double voxel_m,
-                                MeetingPoint& meet) {
+                                const MeetingPoint& meet) {
     constexpr double tolerance = 0.01;  // of a voxel
     constexpr double furthest = 0.4;    // of the edge: what bends more is no arc
     const Facet &f = mesh.facet[one.triangle], &g = mesh.facet[other.triangle];
@@ -70,11 +70,10 @@ Middles add_middles(SurfaceMesh& mesh, std::span<const SurfacePatch> patches, do
                     ThreadPool& pool) {
     constexpr std::uint64_t chunk = 1 << 11;  // edges handed to a thread at once
     const std::vector<Edge> edges = curved_edges(mesh, patches);
+    const MeetingPoint meet(patches, voxel_m);
     std::vector<std::optional<Vec3>> on(edges.size() / 2);
-    pool.run(on.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
-        MeetingPoint meet(patches, voxel_m);
-        for (std::uint64_t n = first; n < last; ++n)
-            on[n] = bent_middle(mesh, edges[2 * n], edges[2 * n + 1], patches, voxel_m, meet);
+    pool.each(on.size(), chunk, [&](std::size_t n) {
+        on[n] = bent_middle(mesh, edges[2 * n], edges[2 * n + 1], patches, voxel_m, meet);
     });
     Middles out(mesh.triangle.size(), {no_vertex, no_vertex, no_vertex});
     for (std::size_t n = 0; n < on.size(); ++n) {

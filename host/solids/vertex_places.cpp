@@ -36,18 +36,19 @@ class Places {
                  }),
           patches_(patches),
           h_(entries.voxel_m()),
+          meet_(patches, h_),
           known_(surface.corner.size()),
           open_(voxels.size(), 0) {}
 
     std::vector<Vec3> find(ThreadPool& pool) {
         std::vector<Vec3> at(surface_.corner.size());
         pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
-            Scratch scratch{MeetingPoint(patches_, h_)};
+            Scratch scratch;
             for (std::uint64_t v = first; v < last; ++v) at[v] = place(v, corner(v), scratch);
         });
         smooth(at, pool);
         pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
-            Scratch scratch{MeetingPoint(patches_, h_)};
+            Scratch scratch;
             for (std::uint64_t v = first; v < last; ++v)
                 if (!known_[v]) at[v] = place(v, at[v], scratch);
         });
@@ -62,8 +63,7 @@ class Places {
 
     // Of the vertex that is placed: its patches, others, and the voxels around it.
     struct Scratch {
-        MeetingPoint meet;
-        std::vector<std::uint32_t> of{}, others{}, around{};
+        std::vector<std::uint32_t> of, others, around;
     };
 
     // Where the patches of the vertex's faces meet next to `base`.
@@ -81,7 +81,7 @@ class Places {
         }
         if (s.of.empty()) return base;
         sort_unique(s.of);
-        const Vec3 met = s.meet(s.of, base, corner(v));
+        const Vec3 met = meet_(s.of, base, corner(v));
         sort_unique(s.around);
         return on_solid(met, s.around) ? met : cut(met, base, corner(v), s);
     }
@@ -113,7 +113,7 @@ class Places {
         Vec3 best = met;
         double least = h_;
         const auto attempt = [&] {
-            const Vec3 p = s.meet(s.of, base, corner);
+            const Vec3 p = meet_(s.of, base, corner);
             const double moved = length(minus(p, met));
             if (moved >= least || !on_solid(p, s.around)) return;
             least = moved;
@@ -242,6 +242,7 @@ class Places {
     Rows<std::uint32_t> faces_;  // at each vertex
     std::span<const SurfacePatch> patches_;
     double h_;
+    MeetingPoint meet_;
     std::vector<std::uint8_t> known_;  // of each vertex: each of its faces has a patch
     std::vector<std::uint8_t> open_;   // of each voxel, bits of the directions of its faces
     std::vector<Beside> beside_;
