@@ -30,16 +30,6 @@ std::optional<ConvexPart> bar(const Vec3& to, double z, double half_m) {
     return hull_part(points);
 }
 
-// Whether a part overlaps one of any body that counts.
-template <class Counts>
-bool meets(const std::vector<Body>& bodies, const ConvexPart& part, const Counts& counts) {
-    return std::ranges::any_of(bodies, [&](const Body& other) {
-        return counts(other) && std::ranges::any_of(other.parts, [&](const ConvexPart& stays) {
-                   return near(part, stays, 0) && overlap(part, stays);
-               });
-    });
-}
-
 // A bar under a body, of its own or of the world.
 struct Strut {
     ConvexPart part;
@@ -60,8 +50,10 @@ std::optional<Strut> strut_at(const std::vector<Body>& bodies, const std::vector
                 foot = std::max(foot, gap->to_m);
     if (foot > middle->from_m) return std::nullopt;
     auto strut = bar({at[0], at[1], middle->from_m + into_m}, foot, half_m);
-    const auto another = [&](const Body& other) { return &other != &body; };
-    if (!strut || meets(bodies, *strut, another)) return std::nullopt;
+    if (!strut || any_near(bodies, *strut, 0, [&](const Body& other, const ConvexPart& part) {
+            return &other != &body && overlap(*strut, part);
+        }))
+        return std::nullopt;
     std::vector<Point2> feet;
     for (const Vec3& c : strut->corner)
         if (c[2] < strut->low[2] + 1e-9) feet.push_back({c[0], c[1]});
@@ -96,8 +88,9 @@ std::vector<Strut> posts_of(const std::vector<Body>& bodies, const Body& body, d
     std::vector<Strut> out;
     for (const Vec3& c : spread_low(body, 2 * half_m)) {
         auto slab = bar({c[0], c[1], c[2]}, c[2] - thick_m, half_m);
-        const auto moves = [](const Body& other) { return !other.fixed; };
-        if (slab && !meets(bodies, *slab, moves))
+        if (slab && !any_near(bodies, *slab, 0, [&](const Body& other, const ConvexPart& part) {
+                return !other.fixed && overlap(*slab, part);
+            }))
             out.push_back({*std::move(slab), {{c[0], c[1]}}, c[2] - lowest});
     }
     std::ranges::stable_sort(out, {}, &Strut::length_m);
@@ -211,17 +204,12 @@ bool add_struts(const std::vector<Body>& bodies, const std::vector<bool>& stands
 
 // Whether it touches something fixed beside it.
 bool leans_on_fixed(const std::vector<Body>& bodies, const Body& body, double within_m) {
-    const ConvexPart box = box_around(body.parts);
-    for (const Body& other : bodies) {
-        if (!other.fixed) continue;
-        for (const ConvexPart& stays : other.parts) {
-            if (!near(box, stays, within_m)) continue;
-            for (const ConvexPart& part : body.parts)
-                if (near(part, stays, within_m) && apart(stays, part).gap_m <= within_m)
-                    return true;
-        }
-    }
-    return false;
+    return any_near(
+        bodies, box_around(body.parts), within_m, [&](const Body& other, const ConvexPart& stays) {
+            return other.fixed && std::ranges::any_of(body.parts, [&](const ConvexPart& part) {
+                       return near(part, stays, within_m) && apart(stays, part).gap_m <= within_m;
+                   });
+        });
 }
 
 // Whether anything is close below it, so that it was set down there and does not hang.
@@ -230,10 +218,8 @@ bool near_below(const std::vector<Body>& bodies, const Body& body) {
     ConvexPart below = box_around(body.parts);
     below.high[2] = below.low[2];
     below.low[2] -= close_m;
-    return std::ranges::any_of(bodies, [&](const Body& other) {
-        return &other != &body && std::ranges::any_of(other.parts, [&](const ConvexPart& part) {
-            return part.high[2] <= below.high[2] + close_m && near(below, part, 0);
-        });
+    return any_near(bodies, below, 0, [&](const Body& other, const ConvexPart& part) {
+        return &other != &body && part.high[2] <= below.high[2] + close_m;
     });
 }
 

@@ -4,10 +4,7 @@
 #include <array>
 #include <string>
 
-#include "export/write_mjcf.h"
-#include "export/write_sdf.h"
-#include "export/write_urdf.h"
-#include "export/write_usd.h"
+#include "export/writers.h"
 #include "io/text.h"
 #include "topple/error.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors.h"
 #include "export/names.h"
 #include "topple/error.h"
 
@@ -26,6 +27,17 @@ std::string fault_of(const Body& body) {
     if (!finite(body.inertia_kg_m2)) return "its inertia is not known";
     if (!has_inertia(body)) return "its inertia is not positive";
     return {};
+}
+
+Shape shape_in(const Body& body, const ConvexPart& part) {
+    Shape out = shape_of(part);
+    std::visit(
+        [&](auto& shape) {
+            if constexpr (requires { shape.center; })
+                shape.center = minus(shape.center, body.center_m);
+        },
+        out);
+    return out;
 }
 
 }  // namespace
@@ -51,7 +63,7 @@ std::vector<NamedBody> named_bodies(const SimScene& scene) {
         if (!fault.empty()) throw Error(ErrorKind::input, to.name + " can't be exported: " + fault);
         to.body = &body;
         for (const ConvexPart& part : body.parts)
-            to.parts.push_back({part_name(to.name, to.parts.size()), &part, shape_of(part)});
+            to.parts.push_back({part_name(to.name, to.parts.size()), &part, shape_in(body, part)});
     }
     return out;
 }

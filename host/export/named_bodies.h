@@ -12,7 +12,7 @@ namespace topple::exports {
 struct NamedPart {
     std::string name;  // object_ID_part_N
     const ConvexPart* part = nullptr;
-    Shape shape;
+    Shape shape;  // in the body's frame: from its centre of mass
 };
 
 struct NamedBody {

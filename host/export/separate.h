@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,17 @@ ConvexPart box_around(std::span<const ConvexPart> parts);
 
 // Whether the boxes around two parts come closer than that.
 bool near(const ConvexPart& a, const ConvexPart& b, double distance_m);
+
+// Whether any part of the bodies that comes so near to one is so: is(body, part).
+template <class Is>
+bool any_near(const std::vector<Body>& bodies, const ConvexPart& to, double distance_m,
+              const Is& is) {
+    return std::ranges::any_of(bodies, [&](const Body& body) {
+        return std::ranges::any_of(body.parts, [&](const ConvexPart& part) {
+            return near(to, part, distance_m) && is(body, part);
+        });
+    });
+}
 
 // Cuts parts of different bodies where they overlap, along the plane between them that takes least
 // of what is solid; what lies below keeps its form where either would do. A body that cutting would

@@ -7,7 +7,7 @@
 #include "core/solid_scene.h"
 #include "core/thread_pool.h"
 #include "export/body.h"
-#include "export/free_place.h"
+#include "export/floor.h"
 #include "topple/scene.h"
 
 namespace topple::exports {

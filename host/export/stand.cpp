@@ -73,13 +73,10 @@ void flatten_feet(std::vector<Body>& bodies, double within_m) {
                          if (points.size() == part.corner.size()) return;
                          auto flat = reshaped(part, points);
                          if (!flat) return;
-                         for (const Body& other : bodies) {
-                             if (&other == &body) continue;
-                             for (const ConvexPart& stays : other.parts)
-                                 if (near(*flat, stays, 0) && apart(*flat, stays).gap_m < -1e-6)
-                                     return;
-                         }
-                         part = *std::move(flat);
+                         const auto in_the_way = [&](const Body& other, const ConvexPart& stays) {
+                             return &other != &body && apart(*flat, stays).gap_m < -1e-6;
+                         };
+                         if (!any_near(bodies, *flat, 0, in_the_way)) part = *std::move(flat);
                      });
     }
 }

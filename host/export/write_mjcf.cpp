@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "export/write_mjcf.h"
-
 #include <string>
 
 #include "core/vectors.h"
@@ -8,6 +6,7 @@
 #include "export/text.h"
 #include "export/turned.h"
 #include "export/write_obj.h"
+#include "export/writers.h"
 
 namespace topple::exports {
 namespace {
@@ -23,7 +22,6 @@ void add_mesh(const NamedPart& each, const Vec3& center_m, std::string& out) {
 // What a geom is, in the body's frame.
 struct GeomOf {
     const std::string& name;
-    const Vec3& center_m;
 
     std::string operator()(std::monostate) const {
         return joined(attribute("type", "mesh"), attribute("mesh", name));
@@ -31,20 +29,19 @@ struct GeomOf {
     std::string operator()(const Box& box) const {
         const auto q = quaternion(box.axis);
         return joined(attribute("type", "box"), attribute("size", text(box.half_m)),
-                      place(box.center), attribute("quat", numbers({q[0], q[1], q[2], q[3]})));
+                      attribute("pos", text(box.center)),
+                      attribute("quat", numbers({q[0], q[1], q[2], q[3]})));
     }
     std::string operator()(const Cylinder& cylinder) const {
         return joined(attribute("type", "cylinder"),
                       attribute("size", numbers({cylinder.radius_m, cylinder.half_m})),
-                      place(cylinder.center), attribute("zaxis", text(cylinder.axis)));
+                      attribute("pos", text(cylinder.center)),
+                      attribute("zaxis", text(cylinder.axis)));
     }
     std::string operator()(const Sphere& sphere) const {
         return joined(attribute("type", "sphere"), attribute("size", number(sphere.radius_m)),
-                      place(sphere.center));
+                      attribute("pos", text(sphere.center)));
     }
-
-  private:
-    std::string place(const Vec3& at) const { return attribute("pos", text(minus(at, center_m))); }
 };
 
 // Of what is fixed, too: MuJoCo would make up a mass of its parts.
@@ -69,7 +66,7 @@ void add_body(const NamedBody& named, std::string& assets, std::string& out) {
     for (const NamedPart& each : named.parts) {
         if (is_mesh(each.shape)) add_mesh(each, body.center_m, assets);
         append(out, "      <geom", attribute("name", each.name), attribute("class", "collision"),
-               std::visit(GeomOf{each.name, body.center_m}, each.shape), "/>\n");
+               std::visit(GeomOf{each.name}, each.shape), "/>\n");
     }
     if (!body.visual.triangle.empty()) {
         const std::string mesh = joined(named.name, "_visual");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "export/write_obj.h"
 
-#include <algorithm>
+#include <map>
+#include <vector>
 
 #include "core/vectors.h"
 #include "export/colour_texture.h"
@@ -12,9 +13,9 @@ namespace topple::exports {
 namespace {
 
 // A hundredth of a millimetre: what is seen need not be finer.
-constexpr int visual_digits = 5, normal_digits = 3;
+constexpr int visual_digits = 5, normal_digits = 3, texel_digits = 7;
 
-void add_vector(std::string& out, const char* what, const Vec3& v, int digits) {
+void add_vector(std::string& out, const char* what, const auto& v, int digits) {
     out += what;
     for (const double each : v) {
         out += ' ';
@@ -37,18 +38,12 @@ Rgb8 mean_colour(const Visual& visual, const std::array<std::uint32_t, 3>& trian
 
 std::string part_obj(const ConvexPart& part, const Vec3& center_m) {
     std::string out(text_mark);
-    for (const Vec3& c : part.corner) {
-        out += "v ";
-        out += text(minus(c, center_m));
-        out += '\n';
-    }
+    for (const Vec3& c : part.corner) append(out, "v ", text(minus(c, center_m)), "\n");
     for (const auto& outline : part.outline) {
         for (std::size_t n = 1; n + 1 < outline.size(); ++n) {
             out += 'f';
-            for (const std::uint32_t v : {outline[0], outline[n], outline[n + 1]}) {
-                out += ' ';
-                out += std::to_string(v + 1);
-            }
+            for (const std::uint32_t v : {outline[0], outline[n], outline[n + 1]})
+                append(out, " ", std::to_string(v + 1));
             out += '\n';
         }
     }
@@ -58,38 +53,25 @@ std::string part_obj(const ConvexPart& part, const Vec3& center_m) {
 std::string visual_obj(const Visual& visual) {
     std::string out(text_mark);
     out.reserve(64 * visual.vertex.size() + 48 * visual.triangle.size());
-    out += "mtllib ";
-    out += material_file;
-    out += '\n';
+    append(out, "mtllib ", material_file, "\n");
     for (const Vec3& v : visual.vertex) add_vector(out, "v", v, visual_digits);
     for (const Vec3& n : visual.normal) add_vector(out, "vn", n, normal_digits);
-    std::vector<std::uint32_t> texel, used;
+    std::vector<std::uint32_t> texel;
     for (const auto& triangle : visual.triangle)
         texel.push_back(texel_of(mean_colour(visual, triangle)));
-    used = texel;
-    std::ranges::sort(used);
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    for (const std::uint32_t each : used) {
-        const auto [u, v] = middle_of_texel(each);
-        out += "vt ";
-        append_fixed(out, u, 7);
-        out += ' ';
-        append_fixed(out, v, 7);
-        out += '\n';
+    std::map<std::uint32_t, std::string> number;  // of each texel that is used
+    for (const std::uint32_t each : texel) number.try_emplace(each);
+    std::size_t numbered = 0;
+    for (auto& [each, written] : number) {
+        written = std::to_string(++numbered);
+        add_vector(out, "vt", middle_of_texel(each), texel_digits);
     }
     out += "usemtl colours\n";
     for (std::size_t n = 0; n < visual.triangle.size(); ++n) {
-        const auto place = std::ranges::lower_bound(used, texel[n]) - used.begin() + 1;
-        const std::string t = std::to_string(place);
         out += 'f';
         for (const std::uint32_t v : visual.triangle[n]) {
             const std::string vertex = std::to_string(v + 1);
-            out += ' ';
-            out += vertex;
-            out += '/';
-            out += t;
-            out += '/';
-            out += vertex;
+            append(out, " ", vertex, "/", number[texel[n]], "/", vertex);
         }
         out += '\n';
     }
@@ -97,11 +79,8 @@ std::string visual_obj(const Visual& visual) {
 }
 
 std::string material() {
-    std::string out(text_mark);
-    out += "newmtl colours\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd ";
-    out += colour_file;
-    out += '\n';
-    return out;
+    return joined(text_mark, "newmtl colours\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd ",
+                  colour_file, "\n");
 }
 
 }  // namespace topple::exports

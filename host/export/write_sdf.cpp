@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "export/write_sdf.h"
-
 #include <string>
 
-#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
+#include "export/writers.h"
 
 namespace topple::exports {
 namespace {
@@ -14,7 +12,6 @@ namespace {
 // Where a shape is, in the link's frame, and what it is.
 struct SdfShape {
     const std::string& name;
-    const Vec3& center_m;
     const std::string& folder;  // of meshes
 
     std::string operator()(std::monostate) const { return mesh(name); }
@@ -39,8 +36,8 @@ struct SdfShape {
     static std::string shape(std::string_view pose, std::string_view kind, std::string_view what) {
         return joined(pose, element("geometry", element(kind, what)));
     }
-    std::string pose(const Vec3& at, const Vec3& turn) const {
-        return element("pose", joined(text(minus(at, center_m)), " ", text(turn)));
+    static std::string pose(const Vec3& at, const Vec3& turn) {
+        return element("pose", joined(text(at), " ", text(turn)));
     }
 };
 
@@ -77,12 +74,11 @@ std::string sdf_model(const NamedBody& named, const std::string& surface,
                              "\n      <link name=\"link\">\n");
     if (!body.fixed) out += sdf_inertial(body);
     if (!body.visual.triangle.empty())
-        append(out, "      <visual name=\"visual\">",
-               SdfShape{named.name, body.center_m, folder}.mesh(named.name), "</visual>\n");
+        append(out, "      <visual name=\"visual\">", SdfShape{named.name, folder}.mesh(named.name),
+               "</visual>\n");
     for (const NamedPart& each : named.parts)
         append(out, "      <collision", attribute("name", each.name), ">",
-               std::visit(SdfShape{each.name, body.center_m, folder}, each.shape), surface,
-               "</collision>\n");
+               std::visit(SdfShape{each.name, folder}, each.shape), surface, "</collision>\n");
     out += "      </link>\n    </model>\n";
     return out;
 }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "export/write_urdf.h"
-
 #include <string>
 
-#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
 #include "export/write_obj.h"
+#include "export/writers.h"
 
 namespace topple::exports {
 namespace {
@@ -20,7 +18,6 @@ constexpr std::string_view for_bullet = "_bullet";
 // a hull's mesh, the end of its name.
 struct UrdfShape {
     const std::string& name;
-    const Vec3& center_m;
     std::string_view files, kind;
 
     std::string operator()(std::monostate) const { return mesh(joined(name, kind)); }
@@ -44,9 +41,8 @@ struct UrdfShape {
     }
 
   private:
-    std::string origin(const Vec3& at, const Vec3& turn) const {
-        return joined("<origin", attribute("xyz", text(minus(at, center_m))),
-                      attribute("rpy", text(turn)), "/>");
+    static std::string origin(const Vec3& at, const Vec3& turn) {
+        return joined("<origin", attribute("xyz", text(at)), attribute("rpy", text(turn)), "/>");
     }
 };
 
@@ -68,12 +64,11 @@ std::string urdf_link(const NamedBody& named, double friction, std::string_view 
            "/></contact>\n",
            body.fixed ? urdf_inertial(0, {}) : urdf_inertial(body.mass_kg, body.inertia_kg_m2));
     if (!body.visual.triangle.empty())
-        append(out, "    <visual>",
-               UrdfShape{named.name, body.center_m, files, kind}.mesh(named.name), "</visual>\n");
+        append(out, "    <visual>", UrdfShape{named.name, files, kind}.mesh(named.name),
+               "</visual>\n");
     for (const NamedPart& each : named.parts)
         append(out, "    <collision", attribute("name", each.name), ">",
-               std::visit(UrdfShape{each.name, body.center_m, files, kind}, each.shape),
-               "</collision>\n");
+               std::visit(UrdfShape{each.name, files, kind}, each.shape), "</collision>\n");
     out += "  </link>\n";
     return out;
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "export/write_usd.h"
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
+#include "export/writers.h"
 #include "io/text.h"
 
 namespace topple::exports {
@@ -155,8 +154,8 @@ struct UsdShape {
     }
 
   private:
-    std::string place(const Vec3& at) const {
-        return joined("            double3 xformOp:translate = ", tuple(minus(at, center_m)), "\n");
+    static std::string place(const Vec3& at) {
+        return joined("            double3 xformOp:translate = ", tuple(at), "\n");
     }
     static std::string orient(const Axes& axes) {
         return joined("            quatf xformOp:orient = ", quaternion_tuple(axes), "\n");

@@ -7,8 +7,7 @@
 
 #include "core/thread_pool.h"
 #include "export/sim_scene.h"
-#include "export/write_mjcf.h"
-#include "export/write_urdf.h"
+#include "export/writers.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
 #include "lab/rooms/furnished_room.h"

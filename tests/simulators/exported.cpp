@@ -6,10 +6,7 @@
 
 #include "device/device.h"
 #include "export/make_sim_scene.h"
-#include "export/write_mjcf.h"
-#include "export/write_sdf.h"
-#include "export/write_urdf.h"
-#include "export/write_usd.h"
+#include "export/writers.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
 #include "lab/temporary_folder.h"

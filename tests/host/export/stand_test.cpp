@@ -8,7 +8,6 @@
 #include "export/brace.h"
 #include "export/floor.h"
 #include "export/footing.h"
-#include "export/free_place.h"
 #include "export/separate.h"
 #include "export/simplify.h"
 #include "host/export/blocks.h"

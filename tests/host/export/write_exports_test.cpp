@@ -8,11 +8,8 @@
 #include "export/colour_texture.h"
 #include "export/export_folder.h"
 #include "export/text.h"
-#include "export/write_mjcf.h"
 #include "export/write_obj.h"
-#include "export/write_sdf.h"
-#include "export/write_urdf.h"
-#include "export/write_usd.h"
+#include "export/writers.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
 
