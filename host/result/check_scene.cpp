@@ -89,8 +89,8 @@ class Checks {
         const std::size_t blows = b.push_J.size() * b.height_m.size();
         const auto of_each = rules::length_or_none(DirectedBarrier::directions);
         return of_each(b.push_J) && of_each(b.direction) && b.blow_J.size() == blows &&
-               b.blow_Ns.size() == blows && b.push_N.size() == b.direction.size() &&
-               b.push_error_N.size() == b.direction.size();
+               b.blow_Ns.size() == blows && b.push_error_N.size() == b.push_N.size() &&
+               rules::length_or_none(b.direction.size())(b.push_N);  // none of what hangs
     }
 
     const Scene& scene_;
