@@ -26,7 +26,7 @@ struct CarveCase {
     std::vector<std::uint32_t> pyramid;
 
     CarveCase(std::uint64_t seed, std::uint32_t leaves, std::uint32_t frame_count) {
-        oracle::Random random(seed);
+        Random random(seed);
         const double angle = random.uniform(-3, 3), c = std::cos(angle), s = std::sin(angle);
         grid.voxel_m = random.uniform(0.01, 0.05);
         grid.grid_from_input = {Vec3{c, s, 0}, Vec3{-s, c, 0}, Vec3{0, 0, 1}};

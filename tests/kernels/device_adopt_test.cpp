@@ -51,8 +51,7 @@ void expect_result(const float* dst) {
 class DeviceAdopt : public ::testing::Test {
   protected:
     bool missing(const char* what) {
-        const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");
-        EXPECT_FALSE(required && std::string(required) == "1") << what << " is missing";
+        EXPECT_FALSE(backends_required()) << what << " is missing";
         return true;
     }
 };

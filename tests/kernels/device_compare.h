@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "device/buffer.h"
+#include "random.h"
 
 // Comparing what kernels give, element by element.
 namespace topple::test {
@@ -115,31 +116,6 @@ class Guarded {
     static T guard() { return std::bit_cast<T>(0x4b1d4b1du); }
     std::uint64_t count_;
     device::Buffer<T> buffer_;
-};
-
-// The project's test numbers: a 32-bit permuted congruential generator (O'Neill 2014), the same on
-// every machine.
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : state_(seed * 2 + 1) { word(); }
-    std::uint32_t word() {
-        const std::uint64_t old = state_;
-        state_ = old * 6364136223846793005ULL + 1442695040888963407ULL;
-        const auto mixed = static_cast<std::uint32_t>(((old >> 18) ^ old) >> 27);
-        return std::rotr(mixed, static_cast<int>(old >> 59));
-    }
-    // Uniform in [low, high).
-    float uniform(float low, float high) {
-        return low + (high - low) * (static_cast<float>(word() >> 8) * 0x1p-24f);
-    }
-    std::vector<float> floats(std::size_t count, float low, float high) {
-        std::vector<float> out(count);
-        for (float& v : out) v = uniform(low, high);
-        return out;
-    }
-
-  private:
-    std::uint64_t state_;
 };
 
 }  // namespace topple::test

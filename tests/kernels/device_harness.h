@@ -9,9 +9,15 @@
 
 #include "device/devices.h"
 #include "device/vulkan/vulkan_device.h"
-#include "topple/error.h"
+#include "errors.h"
 
 namespace topple::test {
+
+// Whether a missing backend is a failure, as in CI, rather than a reason to skip by name.
+inline bool backends_required() {
+    const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");
+    return required && std::string(required) == "1";
+}
 
 // A test that runs once on each backend, of kernels by Vulkan also in their form for real GPUs. A
 // missing backend skips by name; with TOPPLE_REQUIRE_BACKENDS=1 (as in CI) it fails instead.
@@ -21,10 +27,8 @@ class EachBackend : public ::testing::TestWithParam<const char*> {
         try {
             device = open(GetParam());
         } catch (const Error& error) {
-            const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");
-            if (required && std::string(required) == "1") {
+            if (backends_required())
                 FAIL() << "backend " << GetParam() << " is missing: " << error.what();
-            }
             GTEST_SKIP() << "backend " << GetParam() << " is missing: " << error.what();
         }
         ASSERT_TRUE(std::string(GetParam()).starts_with(device::to_string(device->info().backend)));

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "core/random.h"
 #include "device/queue.h"
+#include "device_compare.h"
 #include "device_harness.h"
 #include "disturbance_reach.hpp"
 #include "oracle/disturbance_oracle.h"
@@ -19,7 +18,6 @@ using device::Buffer;
 // A padded map of random solids and primary motion, random blocks of it, and random footprints.
 struct Case {
     static constexpr int width = 256, height = 96, radius = 9;
-    static constexpr std::uint32_t guard = 0xdeadbeef;
     std::uint32_t blocks, rows;
     unsigned directions, bands, band_first;
 
@@ -93,9 +91,9 @@ struct Case {
 std::vector<std::uint32_t> run_reach(device::Device& device, const Case& c) {
     const std::uint64_t outputs = std::uint64_t{c.rows} * c.cells();
     Buffer<std::uint32_t> starts(device, c.starts, "starts"), solid(device, c.grid.solid, "solid"),
-        first(device, c.row_first, "first"), blocked(device, outputs + 64, "blocked");
+        first(device, c.row_first, "first");
+    const test::Guarded<std::uint32_t> blocked(device, outputs, "blocked");
     Buffer<std::int32_t> a(device, c.step_a, "a"), b(device, c.step_b, "b");
-    blocked.fill(Case::guard);
     device::Queue queue(device);
     queue.add<kernels::DisturbanceReach>(outputs,
                                          {.block_start = starts,
@@ -103,9 +101,10 @@ std::vector<std::uint32_t> run_reach(device::Device& device, const Case& c) {
                                           .row_first = first,
                                           .step_a = a,
                                           .step_b = b,
-                                          .blocked = blocked},
+                                          .blocked = blocked.slice()},
                                          {.cell_count = c.cells(), .row_count = c.rows});
     queue.run();
+    EXPECT_TRUE(blocked.untouched());
     return blocked.download();
 }
 
@@ -116,9 +115,8 @@ std::vector<float> run_convolution(device::Device& device, const Case& c,
         blocked(device, blocked_words, "blocked"), first(device, c.entry_first, "first"),
         row(device, c.entry_row, "row");
     Buffer<std::int32_t> delta(device, c.entry_delta, "delta");
-    Buffer<float> primary(device, c.primary, "primary"), weight(device, c.entry_weight, "weight"),
-        density(device, outputs + 64, "density");
-    density.fill(-1.0f);
+    Buffer<float> primary(device, c.primary, "primary"), weight(device, c.entry_weight, "weight");
+    const test::Guarded<float> density(device, outputs, "density");
     device::Queue queue(device);
     queue.add<kernels::Disturbance>(std::uint64_t{c.directions} * ((c.bands + 3) / 4) * c.cells(),
                                     {.block_start = starts,
@@ -128,7 +126,7 @@ std::vector<float> run_convolution(device::Device& device, const Case& c,
                                      .entry_delta = delta,
                                      .entry_row = row,
                                      .entry_weight = weight,
-                                     .density = density},
+                                     .density = density.slice()},
                                     {.cell_count = c.cells(),
                                      .row_count = c.rows,
                                      .plane_cells = Case::width * Case::height,
@@ -138,6 +136,7 @@ std::vector<float> run_convolution(device::Device& device, const Case& c,
                                      .band_count = c.bands,
                                      .output_first = 0});
     queue.run();
+    EXPECT_TRUE(density.untouched());
     return density.download();
 }
 
@@ -153,10 +152,12 @@ constexpr int shapes = 9;
 class DisturbanceKernels : public test::EachBackend {};
 
 TEST_P(DisturbanceKernels, ReachIsExact) {
+    const auto native = device::open_native();
     for (int n = 0; n < shapes; ++n) {
         const Case& c = shape(n);
         const auto got = run_reach(*device, c);
-        std::size_t wrong = 0, at = 0, shut = 0;
+        EXPECT_TRUE(test::same(got, run_reach(*native, c)));
+        std::size_t shut = 0;
         for (std::uint32_t cell = 0; cell < c.cells(); ++cell) {
             const int x = static_cast<int>(c.map_cell(cell) % Case::width);
             const int y = static_cast<int>(c.map_cell(cell) / Case::width);
@@ -168,26 +169,24 @@ TEST_P(DisturbanceKernels, ReachIsExact) {
                 const std::uint32_t word =
                     got[(std::size_t{cell / 64} * c.rows + row) * 64 + cell % 64];
                 shut += want != 0;
-                wrong += word != want;
                 ASSERT_EQ(word, want) << "case " << n << ", row " << row << ", cell " << cell;
             }
         }
-        at = std::size_t{c.rows} * c.cells();
-        EXPECT_EQ(wrong, 0u);
         if (c.rows >= 3 && c.blocks > 0) {
             EXPECT_GT(shut, 0u) << "case " << n << " tests nothing";
         }
-        for (; at < got.size(); ++at) ASSERT_EQ(got[at], Case::guard) << "written past the end";
     }
 }
 
-TEST_P(DisturbanceKernels, DensityWithinItsBound) {
+TEST_P(DisturbanceKernels, DensityWithinItsBoundAndNativeToTheBit) {
+    const auto native = device::open_native();
     for (int n = 0; n < shapes; ++n) {
         const Case& c = shape(n);
         std::vector<std::uint32_t> blocked(std::size_t{c.rows} * c.cells());
         Random random(5);
         for (auto& word : blocked) word = static_cast<std::uint32_t>(random.bits() & random.bits());
         const auto got = run_convolution(*device, c, blocked);
+        EXPECT_TRUE(test::same(got, run_convolution(*native, c, blocked)));
         double worst = 0;
         std::size_t at = 0, positive = 0;
         for (unsigned d = 0; d < c.directions; ++d) {
@@ -217,18 +216,7 @@ TEST_P(DisturbanceKernels, DensityWithinItsBound) {
             EXPECT_GT(positive, 0u) << "case " << n << " tests nothing";
         }
         EXPECT_LE(worst, 101 * 0x1p-24);
-        for (; at < got.size(); ++at) ASSERT_EQ(got[at], -1.0f) << "written past the end";
     }
-}
-
-TEST_P(DisturbanceKernels, SameBitsAsNative) {
-    const Case& c = shape(7);
-    const auto native = device::open_native();
-    const auto blocked = run_reach(*native, c);
-    ASSERT_EQ(run_reach(*device, c), blocked);
-    const auto want = run_convolution(*native, c, blocked),
-               got = run_convolution(*device, c, blocked);
-    EXPECT_EQ(std::memcmp(want.data(), got.data(), want.size() * sizeof(float)), 0);
 }
 
 TOPPLE_ON_EACH_FORM(DisturbanceKernels);

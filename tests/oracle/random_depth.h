@@ -5,27 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "random.h"
 #include "topple/input.h"
 
-// Depth frames and numbers for tests: a seeded generator of our own, the same everywhere.
 namespace topple::oracle {
-
-struct Random {
-    std::uint64_t state;
-    explicit Random(std::uint64_t seed) : state(seed * 0x9e3779b97f4a7c15ULL + 1) {}
-    std::uint32_t next() {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        return static_cast<std::uint32_t>(state >> 32);
-    }
-    std::uint32_t below(std::uint32_t n) { return next() % n; }
-    double uniform(double low, double high) { return low + (high - low) * (next() / 4294967296.0); }
-};
 
 // A camera at a random place within `radius` of the origin that looks a random way, and a depth
 // image with steps and slopes, half of them with holes.
-inline DepthFrame random_frame(Random& random, const Intrinsics& k, double radius) {
+inline DepthFrame random_frame(test::Random& random, const Intrinsics& k, double radius) {
     DepthFrame frame;
     double q[4], norm = 0;
     for (double& c : q) {

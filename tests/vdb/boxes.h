@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "clouds.h"
 #include "topple/input.h"
 
 // Analytic boxes seen by pinhole cameras: depth frames, and the points and labels they give.
@@ -81,9 +82,8 @@ struct Boxes {
                 frame.depth.push_back(
                     which < 0 ? 0 : static_cast<std::uint16_t>(std::lround(best * 1000)));
                 if (which < 0) continue;
-                cloud.x.push_back(static_cast<float>(eye[0] + best * way[0]));
-                cloud.y.push_back(static_cast<float>(eye[1] + best * way[1]));
-                cloud.z.push_back(static_cast<float>(eye[2] + best * way[2]));
+                test::add(cloud, eye[0] + best * way[0], eye[1] + best * way[1],
+                          eye[2] + best * way[2]);
                 label.push_back(which);
             }
         }

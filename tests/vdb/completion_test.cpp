@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "boxes.h"
+#include "clouds.h"
 #include "core/scan_gaps.h"
 #include "device/device.h"
 #include "device/devices.h"
+#include "errors.h"
 #include "host/solids/cell_column.h"
 #include "topple/error.h"
 #include "vdb/voxel_scene.h"
@@ -66,9 +68,7 @@ std::size_t completed_below(const VoxelScene& scene, std::int32_t primitive, dou
 void add_noisy_foot(Boxes& scene, std::int32_t label, double half, double z) {
     for (double along = -half; along < half; along += 0.5 * h) {
         for (const auto& [x, y] : {std::pair(half, along), std::pair(along, half)}) {
-            scene.cloud.x.push_back(static_cast<float>(x));
-            scene.cloud.y.push_back(static_cast<float>(y));
-            scene.cloud.z.push_back(static_cast<float>(z));
+            test::add(scene.cloud, x, y, z);
             scene.label.push_back(label);
         }
     }
@@ -234,15 +234,7 @@ TEST(Completion, WhatIsTooLargeToFillIsRefused) {
     }
     VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
                      std::vector<std::int32_t>(cloud.size(), 0));
-    try {
-        fill(*device, scene, {});
-        FAIL() << "not refused";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_NE(std::string(error.what()).find("use ParseOptions::voxel_m = 0."),
-                  std::string::npos)
-            << error.what();
-    }
+    test::expect_input_error([&] { fill(*device, scene, {}); }, {"use ParseOptions::voxel_m = 0."});
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <set>
 #include <tuple>
 
+#include "clouds.h"
 #include "device/device.h"
+#include "errors.h"
 #include "kernels/device_harness.h"
 #include "oracle/random_depth.h"
 #include "oracle/six_fill_oracle.h"
@@ -20,15 +22,7 @@ using test::Boxes;
 
 class Scenes : public test::EachBackend {};
 
-PointCloud cloud_of(const std::vector<Vec3>& points) {
-    PointCloud cloud;
-    for (const Vec3& p : points) {
-        cloud.x.push_back(static_cast<float>(p[0]));
-        cloud.y.push_back(static_cast<float>(p[1]));
-        cloud.z.push_back(static_cast<float>(p[2]));
-    }
-    return cloud;
-}
+using test::cloud_of;
 
 TEST_P(Scenes, BoxesAreFilledAndDoNotLeak) {
     const Boxes boxes = Boxes::on_a_floor();
@@ -80,7 +74,7 @@ TEST_P(Scenes, NothingFillsBelowTheFloor) {
 
 TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-        oracle::Random random(seed);
+        test::Random random(seed);
         // Shells of small random boxes: they overlap, touch and leave gaps.
         std::vector<Vec3> points;
         std::vector<std::int32_t> label;
@@ -310,7 +304,7 @@ TEST(VoxelScene, MajorityLabel) {
 
 TEST(VoxelScene, StrayPointsNeitherFillMemoryNorVanish) {
     std::vector<Vec3> points;
-    oracle::Random random(4);
+    test::Random random(4);
     for (int n = 0; n < 5000; ++n)
         points.push_back({random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)});
     points.push_back({5000, -3000, 200});  // within reach, far from all others
@@ -334,14 +328,8 @@ TEST(VoxelScene, RefusesWhatItCannotHold) {
     std::vector<Vec3> points;
     for (int n = 0; n < 1000; ++n) points.push_back({n * 3.0, n * 2.9, n * 1.0});
     const std::vector<std::int32_t> label(points.size(), 0);
-    try {
-        VoxelScene scene({}, cloud_of(points), label);
-        ADD_FAILURE() << "accepted";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_NE(std::string(error.what()).find("ParseOptions::voxel_m"), std::string::npos)
-            << error.what();
-    }
+    test::expect_input_error([&] { VoxelScene scene({}, cloud_of(points), label); },
+                             {"ParseOptions::voxel_m"});
     EXPECT_THROW(VoxelScene({.voxel_m = 0}, {}, {}), Error);
     EXPECT_THROW(VoxelScene({.voxel_m = std::numeric_limits<double>::quiet_NaN()}, {}, {}), Error);
     EXPECT_THROW(VoxelScene({}, cloud_of({{0, 0, 0}}), {}), Error);
@@ -352,7 +340,7 @@ TEST(VoxelScene, RefusesWhatItCannotHold) {
 }
 
 TEST(VoxelScene, CellsAreSortedAndCentred) {
-    oracle::Random random(8);
+    test::Random random(8);
     std::vector<Vec3> points;
     std::vector<std::int32_t> label;
     for (int n = 0; n < 3000; ++n) {

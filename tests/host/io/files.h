@@ -14,11 +14,35 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "topple/error.h"
+#include "errors.h"
+#include "random.h"
 
 // What the tests of readers and writers share.
 namespace topple::test {
+
+inline std::string bytes_of_file(const std::filesystem::path& file) {
+    std::ostringstream out;
+    out << std::ifstream(file, std::ios::binary).rdbuf();
+    return out.str();
+}
+
+// Appends a value in the given byte order.
+template <class T>
+void append(std::string& to, T value, bool big_endian = false) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    if (big_endian != (std::endian::native == std::endian::big))
+        std::reverse(bytes, bytes + sizeof(T));
+    to.append(bytes, sizeof(T));
+}
+
+// Bytes that `read` refuses with an Error(input), and what its message says.
+struct BadFile {
+    std::string bytes;
+    std::vector<std::string_view> says;
+};
 
 // A folder of its own for each test, removed at its end.
 class Files : public ::testing::Test {
@@ -44,56 +68,19 @@ class Files : public ::testing::Test {
         return path(name);
     }
 
-    std::filesystem::path folder_;
-};
-
-inline std::string bytes_of_file(const std::filesystem::path& file) {
-    std::ostringstream out;
-    out << std::ifstream(file, std::ios::binary).rdbuf();
-    return out.str();
-}
-
-// Appends a value in the given byte order.
-template <class T>
-void append(std::string& to, T value, bool big_endian = false) {
-    char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    if (big_endian != (std::endian::native == std::endian::big))
-        std::reverse(bytes, bytes + sizeof(T));
-    to.append(bytes, sizeof(T));
-}
-
-// The message of the Error(input) that `call` throws: one line, with every part of `parts` in it.
-template <class Call>
-void expect_input_error(Call call, std::initializer_list<std::string_view> parts) {
-    try {
-        call();
-    } catch (const Error& error) {
-        const std::string message = error.what();
-        EXPECT_EQ(error.kind(), ErrorKind::input) << message;
-        for (const char c : message) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << message;
-        for (const auto part : parts) {
-            EXPECT_NE(message.find(part), std::string::npos) << message << "\nshould say: " << part;
+    // Each, as the file `name`, is refused by a message that names the file and says what it
+    // should.
+    template <class Bad, class Read>
+    void expect_refused(const std::string& name, const Bad& files, Read read) const {
+        for (const auto& bad : files) {
+            SCOPED_TRACE(bad.bytes.substr(0, 400));
+            const auto file = write(name, bad.bytes);
+            expect_input_error([&] { read(file); }, {name});
+            expect_input_error([&] { read(file); }, bad.says);
         }
-        return;
     }
-    ADD_FAILURE() << "no error, where one should say: " << (parts.size() ? *parts.begin() : "");
-}
 
-// Steele and Vigna's splitmix64.
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t next() {
-        std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-        return z ^ (z >> 31);
-    }
-    std::uint64_t below(std::uint64_t limit) { return next() % limit; }
-
-  private:
-    std::uint64_t state_;
+    std::filesystem::path folder_;
 };
 
 }  // namespace topple::test
