@@ -202,7 +202,7 @@ TEST_F(ColourFolder, what_does_not_fit_is_refused_or_noted) {
     const FrameSequence sequence = FrameSequence::open(folder_);
     EXPECT_TRUE(sequence.colours().empty());
     ASSERT_EQ(sequence.colours().notes().size(), 1u);
-    EXPECT_NE(sequence.colours().notes()[0].find("0000.jpg"), std::string::npos);
+    EXPECT_THAT(sequence.colours().notes()[0], testing::HasSubstr("0000.jpg"));
 }
 
 TEST_F(ColourFolder, frames_without_one_are_noted) {
@@ -214,7 +214,7 @@ TEST_F(ColourFolder, frames_without_one_are_noted) {
     EXPECT_TRUE(sequence.colours().load(0).empty());
     EXPECT_EQ(sequence.colours().load(1).size(), 144u);
     ASSERT_EQ(sequence.colours().notes().size(), 1u);
-    EXPECT_NE(sequence.colours().notes()[0].find("1 frame of 2"), std::string::npos);
+    EXPECT_THAT(sequence.colours().notes()[0], testing::HasSubstr("1 frame of 2"));
 }
 
 }  // namespace

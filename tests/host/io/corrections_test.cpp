@@ -20,11 +20,11 @@ std::string file_of(const std::string& entries) {
 
 class Corrections : public test::Files {
   protected:
-    void refused(const std::string& text, std::initializer_list<std::string_view> parts) {
-        const auto file = write("corrections.json", text);
-        test::expect_input_error([&] { read_corrections(file); }, {file.native()});
-        test::expect_input_error([&] { read_corrections(file); }, parts);
-        test::expect_input_error([&] { corrections_of(text); }, parts);
+    template <class Bad>
+    void refused(const Bad& files) {
+        expect_refused("corrections.json", files, [](const auto& file) { read_corrections(file); });
+        for (const auto& bad : files)
+            test::expect_input_error([&] { corrections_of(bad.bytes); }, bad.says);
     }
 };
 
@@ -53,60 +53,68 @@ TEST_F(Corrections, OfEachKind) {
 }
 
 TEST_F(Corrections, FilesThatAreNone) {
-    refused("", {});
-    refused("[]", {"schema", "topple.corrections/1"});
-    refused("{", {"is no JSON"});
-    refused(R"({"corrections": []})", {"schema"});
-    refused(R"({"schema": "topple.scene/1", "corrections": []})", {"schema"});
-    refused(R"({"schema": 1, "corrections": []})", {"schema"});
-    refused(R"({"schema": "topple.corrections/1"})", {"no list \"corrections\""});
-    refused(R"({"schema": "topple.corrections/1", "corrections": {}})", {"no list"});
-    refused(std::string(200'000, '['), {"nested"});
-    refused(file_of(R"({"do": "fixed", "at_m": [[1e999, 0, 0]]})"), {});
-    refused(file_of(R"({"do": "fixed", "at_m": [[0, 0, 0]], "was": 16})"), {"was", "text is due"});
-    refused(file_of(R"({"do": "fixed", "at_m": [[0, 0, 0]], "was": "a\nb"})"),
-            {"\"was\"", "control character"});
     const std::string fixed = R"({"do": "fixed", "at_m": [[0, 0, 0]]})";
     std::string many = fixed;
     for (int n = 0; n < 1000; ++n) many += "," + fixed;
-    refused(file_of(many), {"1001", "limit of 1000"});
+    const test::BadFile cases[] = {
+        {"", {}},
+        {"[]", {"schema", "topple.corrections/1"}},
+        {"{", {"is no JSON"}},
+        {R"({"corrections": []})", {"schema"}},
+        {R"({"schema": "topple.scene/1", "corrections": []})", {"schema"}},
+        {R"({"schema": 1, "corrections": []})", {"schema"}},
+        {R"({"schema": "topple.corrections/1"})", {"no list \"corrections\""}},
+        {R"({"schema": "topple.corrections/1", "corrections": {}})", {"no list"}},
+        {std::string(200'000, '['), {"nested"}},
+        {file_of(R"({"do": "fixed", "at_m": [[1e999, 0, 0]]})"), {}},
+        {file_of(R"({"do": "fixed", "at_m": [[0, 0, 0]], "was": 16})"), {"was", "text is due"}},
+        {file_of(R"({"do": "fixed", "at_m": [[0, 0, 0]], "was": "a\nb"})"),
+         {"\"was\"", "control character"}},
+        {file_of(many), {"1001", "limit of 1000"}},
+    };
+    refused(cases);
     test::expect_input_error([&] { read_corrections(write("huge", std::string(10'000'001, ' '))); },
                              {"huge"});
     test::expect_input_error([&] { read_corrections(path("none")); }, {"none"});
 }
 
 TEST_F(Corrections, EntriesThatSayNothing) {
-    const std::string good = R"({"do": "fixed", "at_m": [[0, 0, 0]]}, )";
-    const auto wrong = [&](const std::string& entry,
-                           std::initializer_list<std::string_view> parts) {
-        SCOPED_TRACE(entry);
-        refused(file_of(good + entry), {"correction 2"});
-        refused(file_of(good + entry), parts);
+    // What is done where, and more.
+    const auto entry = [](const char* what, const char* at_m, const std::string& more = "") {
+        return std::string(R"({"do": ")") + what + R"(", "at_m": )" + at_m + more + "}";
     };
-    wrong("7", {"number"});
-    wrong("{}", {"\"do\""});
-    wrong(R"({"do": 3})", {"\"do\"", "text"});
-    wrong(R"({"do": "glue", "at_m": [[0, 0, 0]]})", {"glue", "one_thing", "name"});
-    wrong(R"({"do": "fixed"})", {"(fixed)", "no \"at_m\""});
-    for (const char* spots : {"3", "[]", "[3]", "[[0, 0]]", "[[0, 0, 0, 0]]", "[[0, 0, \"1\"]]",
-                              "[[0, 0, null]]", "{\"a\": [0, 0, 0]}"})
-        wrong(std::string(R"({"do": "fixed", "at_m": )") + spots + "}", {"(fixed)", "\"at_m\""});
-    wrong(R"({"do": "fixed", "at_m": [[0, 0, 1e300]]})", {"spot 1", "1e+300"});
-    wrong(R"({"do": "one_thing", "at_m": [[0, 0, 1]]})", {"1 spot", "2 spots"});
-    wrong(R"({"do": "apart", "at_m": [[0, 0, 1]]})", {"no \"from_m\""});
-    wrong(R"({"do": "apart", "at_m": [[0, 0, 1]], "from_m": []})", {"from_m", "0 spots"});
-    wrong(R"({"do": "hollow", "at_m": [[0, 0, 1]]})", {"no \"wall_m\""});
-    wrong(R"({"do": "hollow", "at_m": [[0, 0, 1]], "wall_m": "0.02"})", {"wall_m", "number"});
-    wrong(R"({"do": "hollow", "at_m": [[0, 0, 1]], "wall_m": 0})", {"wall_m", "above 0"});
-    wrong(R"({"do": "mass", "at_m": [[0, 0, 1]], "kg": -1})", {"kg", "-1"});
-    wrong(R"({"do": "mass", "at_m": [[0, 0, 1]], "kg": 1e12})", {"kg", "1e+06"});
-    wrong(R"({"do": "name", "at_m": [[0, 0, 1]], "name": " "})", {"name", "empty"});
-    wrong(R"({"do": "name", "at_m": [[0, 0, 1]], "name": "a\nb"})", {"name", "control"});
-    wrong(R"({"do": "name", "at_m": [[0, 0, 1]], "name": ")" + std::string(201, 'x') + "\"}",
-          {"name", "201"});
-    std::string spots = "[0, 0, 0]";
+    std::string spots = "[[0, 0, 0]";
     for (int n = 0; n < 100; ++n) spots += ", [0, 0, 0]";
-    wrong(R"({"do": "fixed", "at_m": [)" + spots + "]}", {"101", "limit of 100"});
+    spots += "]";
+    const char* one = "[[0, 0, 1]]";
+    std::vector<test::BadFile> cases{
+        {"7", {"number"}},
+        {"{}", {"\"do\""}},
+        {R"({"do": 3})", {"\"do\"", "text"}},
+        {entry("glue", one), {"glue", "one_thing", "name"}},
+        {R"({"do": "fixed"})", {"(fixed)", "no \"at_m\""}},
+        {entry("fixed", "[[0, 0, 1e300]]"), {"spot 1", "1e+300"}},
+        {entry("fixed", spots.c_str()), {"101", "limit of 100"}},
+        {entry("one_thing", one), {"1 spot", "2 spots"}},
+        {entry("apart", one), {"no \"from_m\""}},
+        {entry("apart", one, R"(, "from_m": [])"), {"from_m", "0 spots"}},
+        {entry("hollow", one), {"no \"wall_m\""}},
+        {entry("hollow", one, R"(, "wall_m": "0.02")"), {"wall_m", "number"}},
+        {entry("hollow", one, R"(, "wall_m": 0)"), {"wall_m", "above 0"}},
+        {entry("mass", one, R"(, "kg": -1)"), {"kg", "-1"}},
+        {entry("mass", one, R"(, "kg": 1e12)"), {"kg", "1e+06"}},
+        {entry("name", one, R"(, "name": " ")"), {"name", "empty"}},
+        {entry("name", one, R"(, "name": "a\nb")"), {"name", "control"}},
+        {entry("name", one, R"(, "name": ")" + std::string(201, 'x') + "\""), {"name", "201"}},
+    };
+    for (const char* at_m : {"3", "[]", "[3]", "[[0, 0]]", "[[0, 0, 0, 0]]", "[[0, 0, \"1\"]]",
+                             "[[0, 0, null]]", "{\"a\": [0, 0, 0]}"})
+        cases.push_back({entry("fixed", at_m), {"(fixed)", "\"at_m\""}});
+    for (auto& bad : cases) {
+        bad.bytes = file_of(entry("fixed", "[[0, 0, 0]]") + ", " + bad.bytes);
+        bad.says.push_back("correction 2");
+    }
+    refused(cases);
 }
 
 // Programs may say what no file can.

@@ -120,7 +120,7 @@ TEST_F(MeshColour, of_images_within_the_file) {
     const auto broken = read_cloud(write("a.glb", textured_glb(png.substr(0, 60), "png")));
     EXPECT_TRUE(broken.red.empty());
     ASSERT_EQ(broken.notes.size(), 1u);
-    EXPECT_NE(broken.notes[0].find("cut short"), std::string::npos);
+    EXPECT_THAT(broken.notes[0], testing::HasSubstr("cut short"));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST_F(Splats, centres_of_what_is_opaque_become_points_with_colours) {
         EXPECT_TRUE(cloud.nx.empty());
         EXPECT_EQ(cloud.dropped, 0u);
         ASSERT_EQ(cloud.notes.size(), 1u);
-        EXPECT_NE(cloud.notes[0].find("2 splats of 3"), std::string::npos) << cloud.notes[0];
+        EXPECT_THAT(cloud.notes[0], testing::HasSubstr("2 splats of 3"));
     }
 }
 
@@ -77,7 +77,7 @@ TEST_F(Splats, come_in_portions_like_any_cloud) {
         stream_cloud(path("splats.ply"), 1, [&](PointCloud portion) { points += portion.size(); });
     EXPECT_EQ(points, 1u);
     ASSERT_EQ(rest.notes.size(), 1u);
-    EXPECT_NE(rest.notes[0].find("1 splat of 2"), std::string::npos) << rest.notes[0];
+    EXPECT_THAT(rest.notes[0], testing::HasSubstr("1 splat of 2"));
 }
 
 TEST_F(Splats, a_cloud_with_an_opacity_is_none) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "clouds.h"
 #include "files.h"
 #include "io/mapped_file.h"
 #include "las_files.h"
@@ -21,15 +23,11 @@ class Stream : public test::Files {
         const PointCloud whole = read_cloud(file, unit_m);
         PointCloud joined;
         const PointCloud rest = stream_cloud(file, unit_m, [&](const PointCloud& portion) {
-            joined.x.insert(joined.x.end(), portion.x.begin(), portion.x.end());
-            joined.y.insert(joined.y.end(), portion.y.begin(), portion.y.end());
-            joined.z.insert(joined.z.end(), portion.z.begin(), portion.z.end());
+            for (const auto& p : test::points_of(portion)) test::add(joined, p);
             joined.dropped += portion.dropped;
         });
         EXPECT_EQ(rest.size(), 0u);
-        EXPECT_EQ(joined.x, whole.x);
-        EXPECT_EQ(joined.y, whole.y);
-        EXPECT_EQ(joined.z, whole.z);
+        EXPECT_EQ(test::points_of(joined), test::points_of(whole));
         EXPECT_EQ(joined.dropped, whole.dropped);
         EXPECT_EQ(rest.offset_m, whole.offset_m);
     }
@@ -84,18 +82,15 @@ TEST_F(Stream, AMappedFileIsWholeAfterItsMemoryWasGivenBack) {
 }
 
 TEST_F(Stream, FaultsAreToldInTheirPlace) {
-    const auto refused = [](const std::filesystem::path& file) {
-        try {
-            stream_cloud(file, 1, [](const PointCloud&) {});
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-        return std::string();
+    const std::pair<const char*, test::BadFile> cases[] = {
+        {"none.xyz", {"# nothing\n", {}}},
+        {"nan.xyz", {"nan nan nan\n", {"finite"}}},
+        {"bad.xyz", {"1 2 3\n1 2 x\n", {"line 2"}}},
+        {"few.pts", {"5\n1 2 3\n", {"promises 5"}}},
     };
-    EXPECT_NE(refused(write("none.xyz", "# nothing\n")).find("none.xyz"), std::string::npos);
-    EXPECT_NE(refused(write("nan.xyz", "nan nan nan\n")).find("finite"), std::string::npos);
-    EXPECT_NE(refused(write("bad.xyz", "1 2 3\n1 2 x\n")).find("line 2"), std::string::npos);
-    EXPECT_NE(refused(write("few.pts", "5\n1 2 3\n")).find("promises 5"), std::string::npos);
+    for (const auto& [name, bad] : cases)
+        expect_refused(name, std::span(&bad, 1),
+                       [](const auto& file) { stream_cloud(file, 1, [](const PointCloud&) {}); });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +15,7 @@
 #include "io/palette.h"
 #include "points/formats/read_cloud.h"
 #include "result/landscapes_json.h"
+#include "result/read_result_ply.h"
 #include "result/scene_json.h"
 #include "result/write_ply.h"
 
@@ -73,24 +75,10 @@ TEST_F(Write, scene_json_reads_back_the_same) {
     const auto back = read_scene_json(path("scene.json"));
     EXPECT_EQ(scene_json(back), bytes_of_file(path("scene.json")));
     EXPECT_EQ(back.seed, scene.seed);
-    EXPECT_EQ(back.source, scene.source);
     EXPECT_EQ(back.objects[0].mass_kg, scene.objects[0].mass_kg);
-    EXPECT_EQ(back.objects[0].risk_J, scene.objects[0].risk_J);
-    EXPECT_EQ(back.objects[0].barrier_error_J, 0.02);
-    EXPECT_EQ(back.objects[0].risk_error_J, scene.objects[0].risk_error_J);
-    EXPECT_EQ(back.objects[0].unsafety_category, "medium");
-    EXPECT_FALSE(back.objects[0].unsafety_certain);
-    EXPECT_EQ(back.objects[0].fall.hits_J, 5.25);
-    EXPECT_EQ(back.objects[0].fall.people_share, 0.125);
     EXPECT_EQ(back.objects[0].instability[1].S_J, 9);
-    EXPECT_EQ(back.objects[0].why.azimuth_deg, 45);
-    EXPECT_EQ(back.objects[0].why.edge_m, scene.objects[0].why.edge_m);
-    EXPECT_EQ(back.objects[0].why.stands_on, scene.objects[0].why.stands_on);
     EXPECT_EQ(back.objects[0].why.sentence, scene.objects[0].why.sentence);
-    EXPECT_EQ(back.contacts[0].relation, "fixed");
     EXPECT_EQ(back.supports[0].probability, 0.875);
-    EXPECT_EQ(back.timings_s, scene.timings_s);
-    EXPECT_EQ(back.manhattan_from_input, scene.manhattan_from_input);
 }
 
 TEST_F(Write, landscapes_json_reads_back_the_same) {
@@ -123,20 +111,18 @@ TEST_F(Write, landscapes_json_reads_back_the_same) {
     EXPECT_EQ(read.places.energy_J[5], -7.5f);
 
     const std::string text = bytes_of_file(path("landscapes.json"));
-    const auto broken = [&](const std::string& from, const std::string& to) {
+    for (const auto& [from, to] : {std::pair("\"id\":0", "\"id\":7"),
+                                   {"\"now\":1", "\"now\":2"},
+                                   {"\"side\":3", "\"side\":4"},
+                                   {"topple.landscapes/1", "topple.landscapes/2"},
+                                   {"\"poses\":[0,1]", "\"poses\":[-1,1]"},
+                                   {"]}", "]"}}) {
         std::string changed = text;
-        const auto at = changed.find(from);
-        ASSERT_NE(at, std::string::npos) << from;
-        write_file(path("broken.json"), changed.replace(at, from.size(), to));
+        ASSERT_NE(text.find(from), std::string::npos) << from;
+        write("broken.json", changed.replace(text.find(from), std::strlen(from), to));
         expect_input_error([&] { read_landscapes_json(path("broken.json"), back); },
                            {"broken.json"});
-    };
-    broken("\"id\":0", "\"id\":7");
-    broken("\"now\":1", "\"now\":2");
-    broken("\"side\":3", "\"side\":4");
-    broken("topple.landscapes/1", "topple.landscapes/2");
-    broken("\"poses\":[0,1]", "\"poses\":[-1,1]");
-    broken("]}", "]");
+    }
     expect_input_error([&] { read_landscapes_json(path("none.json"), back); }, {"none.json"});
 }
 
@@ -144,28 +130,22 @@ TEST_F(Write, landscapes_json_reads_back_the_same) {
 TEST_F(Write, scene_json_has_the_fixed_members) {
     const auto json = nlohmann::json::parse(scene_json(some_scene()));
     EXPECT_EQ(json["schema"], "topple.scene/1");
-    for (const char* key :
-         {"source", "topple_version", "backend", "device", "seed", "voxel_size_m", "up",
-          "manhattan_from_input", "density_kg_m3", "friction", "primitives", "objects", "contacts",
-          "supports", "timings_s", "up_method", "manhattan_found", "notes", "swc_energy"}) {
-        EXPECT_TRUE(json.contains(key)) << key;
-    }
-    EXPECT_EQ(json["manhattan_from_input"].size(), 4u);
+    const auto has = [](const nlohmann::json& part, std::initializer_list<const char*> keys) {
+        for (const char* key : keys) EXPECT_TRUE(part.contains(key)) << key;
+    };
+    has(json,
+        {"source", "topple_version", "backend", "device", "seed", "voxel_size_m", "up",
+         "manhattan_from_input", "density_kg_m3", "friction", "primitives", "objects", "contacts",
+         "supports", "timings_s", "up_method", "manhattan_found", "notes", "swc_energy"});
+    has(json["primitives"][0], {"id", "object", "model", "points", "solid_voxels", "volume_m3",
+                                "mass_kg", "center_of_mass_m"});
+    has(json["objects"][0],
+        {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m", "barrier_J",
+         "barrier_error_J", "release_J", "mode", "direction", "instability", "why", "risk_J",
+         "unsafety", "unsafety_category", "unsafety_certain", "risk_error_J", "fall"});
+    has(json["contacts"][0], {"a", "b", "area_m2", "normal", "relation", "probability"});
     EXPECT_EQ(json["manhattan_from_input"][3].size(), 4u);
-    for (const char* key : {"id", "object", "model", "points", "solid_voxels", "volume_m3",
-                            "mass_kg", "center_of_mass_m"}) {
-        EXPECT_TRUE(json["primitives"][0].contains(key)) << key;
-    }
-    for (const char* key :
-         {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m", "barrier_J",
-          "barrier_error_J", "release_J", "mode", "direction", "instability", "why", "risk_J",
-          "unsafety", "unsafety_category", "unsafety_certain", "risk_error_J", "fall"}) {
-        EXPECT_TRUE(json["objects"][0].contains(key)) << key;
-    }
     EXPECT_EQ(json["objects"][0]["instability"][0]["W_J"], 0.1);
-    for (const char* key : {"a", "b", "area_m2", "normal", "relation", "probability"}) {
-        EXPECT_TRUE(json["contacts"][0].contains(key)) << key;
-    }
     EXPECT_EQ(json["supports"][0]["supporter"], 0);
     EXPECT_EQ(json["timings_s"]["normals"], 0.25);
 }
@@ -196,33 +176,48 @@ TEST_F(Write, no_number_that_json_lacks_reaches_scene_json) {
 }
 
 TEST_F(Write, scene_json_that_is_none) {
-    expect_input_error([&] { read_scene_json(write("a.json", "{}")); }, {"a.json", "schema"});
-    expect_input_error([&] { read_scene_json(write("a.json", R"({"schema": "other/1"})")); },
-                       {"topple.scene/1"});
-    expect_input_error([&] { read_scene_json(write("a.json", "nonsense")); }, {"a.json"});
     auto json = nlohmann::json::parse(scene_json(some_scene()));
     json["corrections"] = {{{"do", "melt"}, {"at_m", {{0, 0, 0}}}}};
-    expect_input_error([&] { read_scene_json(write("a.json", json.dump())); },
-                       {"a.json", "\"melt\"", "one_thing, apart"});
+    const test::BadFile cases[] = {{"{}", {"schema"}},
+                                   {R"({"schema": "other/1"})", {"topple.scene/1"}},
+                                   {"nonsense", {}},
+                                   {json.dump(), {"\"melt\"", "one_thing, apart"}}};
+    expect_refused("a.json", cases, [](const auto& file) { read_scene_json(file); });
+}
+
+// The bytes of a PLY behind its header.
+std::string body_of(const std::string& ply) {
+    return ply.substr(ply.find("end_header\n") + 11);
+}
+
+ScenePoints two_points() {
+    ScenePoints out;
+    out.x = {1, 2};
+    out.y = {3, 4};
+    out.z = {5, 6};
+    out.primitive = {0, -1};
+    out.object = {7, -1};
+    return out;
 }
 
 TEST_F(Write, points_ply) {
-    ScenePoints points;
-    points.x = {1, 2};
-    points.y = {3, 4};
-    points.z = {5, 6};
+    ScenePoints points = two_points();
     points.nx = {0, 1};
     points.ny = {0, 0};
     points.nz = {1, 0};
-    points.primitive = {0, -1};
-    points.object = {7, -1};
     write_points_ply(path("points.ply"), points);
     const auto cloud = read_cloud(path("points.ply"));
     EXPECT_EQ(cloud.x, points.x);
     EXPECT_EQ(cloud.nz, points.nz);
+    const ScenePoints read = read_points_ply(path("points.ply"));
+    EXPECT_EQ(read.x, points.x);
+    EXPECT_EQ(read.z, points.z);
+    EXPECT_EQ(read.nz, points.nz);
+    EXPECT_EQ(read.primitive, points.primitive);
+    EXPECT_EQ(read.object, points.object);
+    EXPECT_TRUE(read.red.empty());
     // The layout to the byte: 5 words, 3 words, 3 bytes.
-    const auto bytes = bytes_of_file(path("points.ply"));
-    const auto data = bytes.substr(bytes.find("end_header\n") + 11);
+    const auto data = body_of(bytes_of_file(path("points.ply")));
     ASSERT_EQ(data.size(), 2 * 35u);
     std::string expected;
     for (const float value : {1.0f, 3.0f, 5.0f}) test::append(expected, value);
@@ -234,25 +229,22 @@ TEST_F(Write, points_ply) {
 
     points.nx = points.ny = points.nz = {};
     write_points_ply(path("points.ply"), points);
-    EXPECT_TRUE(read_cloud(path("points.ply")).nx.empty());
+    EXPECT_TRUE(read_points_ply(path("points.ply")).nx.empty());
     points.object.pop_back();
     EXPECT_THROW(write_points_ply(path("points.ply"), points), std::invalid_argument);
     write_points_ply(path("none.ply"), {});
-    EXPECT_NE(bytes_of_file(path("none.ply")).find("element vertex 0\n"), std::string::npos);
+    EXPECT_THAT(bytes_of_file(path("none.ply")), testing::HasSubstr("element vertex 0\n"));
 }
 
 // A scan's own colours stand where programs look for them, and come back; those by object beside.
 TEST_F(Write, points_ply_of_a_coloured_scan) {
-    ScenePoints points;
-    points.x = points.y = points.z = {1, 2};
-    points.primitive = {0, -1};
-    points.object = {7, -1};
+    ScenePoints points = two_points();
     points.red = {10, 0};
     points.green = {20, 0};
     points.blue = {30, 0};
     write_points_ply(path("points.ply"), points);
     const auto bytes = bytes_of_file(path("points.ply"));
-    const auto data = bytes.substr(bytes.find("end_header\n") + 11);
+    const auto data = body_of(bytes);
     ASSERT_EQ(data.size(), 2 * 26u);
     std::string expected = "\x0a\x14\x1e";
     for (const auto channel : colour_of(7)) test::append(expected, channel);
@@ -261,10 +253,11 @@ TEST_F(Write, points_ply_of_a_coloured_scan) {
     EXPECT_EQ(cloud.red, points.red);
     EXPECT_EQ(cloud.green, points.green);
     EXPECT_EQ(cloud.blue, points.blue);
+    EXPECT_EQ(read_points_ply(path("points.ply")).blue, points.blue);
 
     PointsPlyWriter one_by_one(path("streamed.ply"), 2, true);
-    one_by_one.add({1, 1, 1}, 0, 7, {10, 20, 30});
-    one_by_one.add({2, 2, 2}, -1, -1, {0, 0, 0});
+    one_by_one.add({1, 3, 5}, 0, 7, {10, 20, 30});
+    one_by_one.add({2, 4, 6}, -1, -1, {0, 0, 0});
     one_by_one.close();
     EXPECT_EQ(bytes_of_file(path("streamed.ply")), bytes);
 
@@ -276,21 +269,35 @@ TEST_F(Write, points_ply_of_a_coloured_scan) {
 }
 
 TEST_F(Write, solid_ply) {
-    SolidVoxels voxels;
-    voxels.x = {1};
-    voxels.y = {2};
-    voxels.z = {3};
-    voxels.primitive = {4};
-    voxels.object = {5};
-    voxels.state = {1};
+    const SolidVoxels voxels{{1, 2}, {3, 4}, {5, 6}, {0, 1}, {2, 3}, {0, 1}};
     write_solid_ply(path("solid.ply"), voxels);
     EXPECT_EQ(read_cloud(path("solid.ply")).z, voxels.z);
+    const SolidVoxels read = read_solid_ply(path("solid.ply"));
+    EXPECT_EQ(read.y, voxels.y);
+    EXPECT_EQ(read.primitive, voxels.primitive);
+    EXPECT_EQ(read.object, voxels.object);
+    EXPECT_EQ(read.state, voxels.state);
     const auto bytes = bytes_of_file(path("solid.ply"));
-    EXPECT_EQ(bytes.size() - bytes.find("end_header\n") - 11, 24u);
+    EXPECT_EQ(body_of(bytes).size(), 2 * 24u);
     EXPECT_EQ(bytes[bytes.size() - 4], 1) << "the state stands before the colour";
-    for (const char* name : {"primitive", "object", "state"}) {
-        EXPECT_NE(bytes.find(name), std::string::npos) << name;
-    }
+}
+
+TEST_F(Write, results_that_are_damaged_are_refused) {
+    write_points_ply(path("points.ply"), two_points());
+    const std::string whole = bytes_of_file(path("points.ply"));
+    std::string renamed = whole;
+    renamed.replace(renamed.find(" object\n"), 8, " abject\n");
+    ScenePoints points = two_points();
+    points.y[0] = std::numeric_limits<float>::infinity();
+    write_points_ply(path("infinite.ply"), points);
+    const test::BadFile cases[] = {
+        {whole.substr(0, whole.size() - 1), {}},
+        {"ply\nformat ascii 1.0\nelement vertex 1\nproperty uchar object_red\nend_header\n1\n", {}},
+        {renamed, {}},
+        {bytes_of_file(path("infinite.ply")), {}}};
+    expect_refused("bad.ply", cases, [](const auto& file) { read_points_ply(file); });
+    expect_input_error([&] { read_points_ply(path("none.ply")); }, {"none.ply"});
+    expect_input_error([&] { read_solid_ply(path("points.ply")); }, {"points.ply"});
 }
 
 TEST_F(Write, colours_of_a_scene_differ) {
@@ -331,19 +338,6 @@ TEST_F(Write, files_longer_than_the_buffer) {
     writer.write(std::string_view(text).substr(1000001));
     writer.close();
     EXPECT_EQ(bytes_of_file(path("long")), text);
-}
-
-TEST_F(Write, what_is_not_solid_has_no_middle) {
-    Scene scene;
-    for (const std::int32_t id : {0, 1}) scene.objects.emplace_back().id = id;
-    scene.objects[0].box_middle_m = {1, 2, 3};
-    const auto json = nlohmann::json::parse(scene_json(scene));
-    EXPECT_EQ(json["objects"][0]["box_middle_m"], nlohmann::json({1.0, 2.0, 3.0}));
-    EXPECT_TRUE(json["objects"][1]["box_middle_m"].is_null());
-    write_scene_json(path("scene.json"), scene);
-    const Scene back = read_scene_json(path("scene.json"));
-    EXPECT_EQ(back.objects[0].box_middle_m, scene.objects[0].box_middle_m);
-    EXPECT_TRUE(std::isnan(back.objects[1].box_middle_m[1]));
 }
 
 }  // namespace
