@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "clouds.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -29,9 +31,7 @@ class Sheets {
                 surfels_.x.push_back(at(0));
                 surfels_.y.push_back(at(1));
                 surfels_.z.push_back(at(2));
-                surfels_.nx.push_back(static_cast<float>(normal[0]));
-                surfels_.ny.push_back(static_cast<float>(normal[1]));
-                surfels_.nz.push_back(static_cast<float>(normal[2]));
+                test::add_normal(surfels_, normal);
                 primitives_.faces.label.push_back(region);
             }
         }

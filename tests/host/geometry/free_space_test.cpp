@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "clouds.h"
 #include "host/geometry/split_scenes.h"
 
 namespace topple::geometry {
@@ -14,12 +15,7 @@ using Eigen::Vector3d;
 using scenes::Builder;
 
 PointCloud cloud_of(const Builder& scene) {
-    PointCloud cloud;
-    for (const auto& p : scene.points) {
-        cloud.x.push_back(static_cast<float>(p.x()));
-        cloud.y.push_back(static_cast<float>(p.y()));
-        cloud.z.push_back(static_cast<float>(p.z()));
-    }
+    const PointCloud cloud = test::cloud_of(scene.points);
     return cloud;
 }
 

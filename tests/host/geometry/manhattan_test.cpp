@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/manhattan.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "clouds.h"
 #include "device/devices.h"
-#include "geometry_random.h"
+#include "random.h"
 
 namespace topple::geometry {
 namespace {
@@ -20,9 +22,7 @@ PointCloud ball() {
     PointCloud out;
     for (int i = 0; i < 40'000; ++i) {
         const Vector3d p = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-        out.x.push_back(static_cast<float>(p[0]));
-        out.y.push_back(static_cast<float>(p[1]));
-        out.z.push_back(static_cast<float>(p[2]));
+        test::add(out, p);
     }
     return out;
 }
@@ -34,9 +34,7 @@ PointCloud room(const Eigen::Matrix3d& turn, bool walls, std::uint64_t seed) {
     const auto add = [&](const Vector3d& p) {
         const Vector3d q =
             turn * (p + 0.003 * Vector3d(random.normal(), random.normal(), random.normal()));
-        cloud.x.push_back(static_cast<float>(q[0]));
-        cloud.y.push_back(static_cast<float>(q[1]));
-        cloud.z.push_back(static_cast<float>(q[2]));
+        test::add(cloud, q);
     };
     for (int i = 0; i < 60'000; ++i) add({4 * random.uniform(), 3 * random.uniform(), 0});
     for (int i = 0; i < 6'000; ++i)
@@ -60,12 +58,21 @@ double degrees_off(const Vec3& got, const Vector3d& want) {
            180 / M_PI;
 }
 
+Vec3 vec(const Vector3d& v) {
+    return {v[0], v[1], v[2]};
+}
+
 class Manhattan : public ::testing::Test {
   protected:
     Surfels surfels(const Eigen::Matrix3d& turn, bool walls) {
-        const Vector3d eye = turn * Vector3d(2, 1.5, 1.3);
-        const Vec3 viewpoint{eye[0], eye[1], eye[2]};
+        const Vec3 viewpoint = vec(turn * Vector3d(2, 1.5, 1.3));
         return make_surfels(*device, room(turn, walls, 7), 0.03, {&viewpoint, 1}, {});
+    }
+    // Of what a camera at the origin sees, whose y points down.
+    SceneFrame frame_of_view(const PointCloud& cloud) {
+        const Vec3 eye{0, 0, 0};
+        return find_scene_frame(*device, make_surfels(*device, cloud, 0.02, {&eye, 1}, {}),
+                                {.up = {}, .camera_up = Vec3{0, -1, 0}});
     }
     std::unique_ptr<device::Device> device = device::open_native();
 };
@@ -78,7 +85,7 @@ TEST_F(Manhattan, FindsUpOfTiltedRooms) {
             FrameHints hints;
             // A camera that looks 25 degrees down.
             const Vector3d hint = turn * tilt(25, {1, 1, 0}) * Vector3d(0, 0, 1);
-            if (camera) hints.camera_up = Vec3{hint[0], hint[1], hint[2]};
+            if (camera) hints.camera_up = vec(hint);
             const SceneFrame frame = find_scene_frame(*device, s, hints);
             EXPECT_TRUE(frame.found);
             EXPECT_EQ(frame.up_method, "manhattan");
@@ -109,7 +116,6 @@ TEST_F(Manhattan, AnUpThatTheScanContradictsIsNoted) {
     const Eigen::Matrix3d turn = tilt(40, {0.3, -0.8, 0.4});
     const Surfels s = surfels(turn, true);
     const Vector3d truth = turn * Vector3d(0, 0, 1), camera = turn * Vector3d(0, 0.4, 1);
-    const auto vec = [](const Vector3d& v) { return Vec3{v[0], v[1], v[2]}; };
     for (const bool filmed : {false, true}) {
         const auto note = [&](const Vector3d& given) {
             FrameHints hints{.up = vec(given), .camera_up = {}};
@@ -126,8 +132,8 @@ TEST_F(Manhattan, AnUpThatTheScanContradictsIsNoted) {
                             std::string(filmed ? "and cameras " : "") + "show, ("),
                   std::string::npos)
             << note(-truth);
-        EXPECT_NE(note(turn * Vector3d(1, 0, 0)).find("is 90 degrees from"), std::string::npos);
-        EXPECT_NE(note(turn * Vector3d(0.6, 0.3, 1)).find("is 34 degrees from"), std::string::npos);
+        EXPECT_THAT(note(turn * Vector3d(1, 0, 0)), testing::HasSubstr("is 90 degrees from"));
+        EXPECT_THAT(note(turn * Vector3d(0.6, 0.3, 1)), testing::HasSubstr("is 34 degrees from"));
     }
 }
 
@@ -159,8 +165,7 @@ TEST_F(Manhattan, AFormatsUpHoldsWhereTheScanDoesNotContradictIt) {
     const SceneFrame other =
         find_scene_frame(*device, surfels(Eigen::Matrix3d::Identity(), true), hints);
     EXPECT_LT(degrees_off(other.axes[2], {0, 0, 1}), 0.5);
-    EXPECT_NE(other.note.find("(0, 1, 0) up, but its surfaces show (0, 0, 1)"), std::string::npos)
-        << other.note;
+    EXPECT_THAT(other.note, testing::HasSubstr("(0, 1, 0) up, but its surfaces show (0, 0, 1)"));
     const SceneFrame none =
         find_scene_frame(*device, make_surfels(*device, {}, 0.02, {}, {}), hints);
     EXPECT_EQ(none.axes[2], (Vec3{0, 1, 0}));
@@ -193,9 +198,7 @@ void add_rectangle(PointCloud& cloud, const Vector3d& at, const Vector3d& a, con
     for (double u = 0; u < a.norm(); u += 0.01) {
         for (double v = 0; v < b.norm(); v += 0.01) {
             const Vector3d p = at + u * a.normalized() + v * b.normalized();
-            cloud.x.push_back(static_cast<float>(p[0]));
-            cloud.y.push_back(static_cast<float>(p[1]));
-            cloud.z.push_back(static_cast<float>(p[2]));
+            test::add(cloud, p);
         }
     }
 }
@@ -222,9 +225,7 @@ TEST_F(Manhattan, AWallDoesNotPassForTheFloor) {
     add_rectangle(view, {-1.5, 2, -1.2}, {3, 0, 0}, {0, 0, 2.4});
     add_rectangle(view, {-1.5, 1.7, -1.2}, {3, 0, 0}, {0, 0.3, 0});
     const Eigen::Matrix3d turn = to_camera(20);
-    const Vec3 eye{0, 0, 0};
-    const Surfels s = make_surfels(*device, turned(view, turn), 0.02, {&eye, 1}, {});
-    const SceneFrame frame = find_scene_frame(*device, s, {.up = {}, .camera_up = Vec3{0, -1, 0}});
+    const SceneFrame frame = frame_of_view(turned(view, turn));
     EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5);
 }
 
@@ -233,9 +234,7 @@ TEST_F(Manhattan, WallsAloneGiveUp) {
     add_rectangle(view, {0, 2, -0.8}, {-1.2, -1.2, 0}, {0, 0, 1.6});
     add_rectangle(view, {0, 2, -0.8}, {1.2, -1.2, 0}, {0, 0, 1.6});
     const Eigen::Matrix3d turn = to_camera(20);
-    const Vec3 eye{0, 0, 0};
-    const Surfels s = make_surfels(*device, turned(view, turn), 0.02, {&eye, 1}, {});
-    const SceneFrame frame = find_scene_frame(*device, s, {.up = {}, .camera_up = Vec3{0, -1, 0}});
+    const SceneFrame frame = frame_of_view(turned(view, turn));
     EXPECT_EQ(frame.up_method, "upright-surfaces");
     EXPECT_FALSE(frame.note.empty());
     EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 1.0);
@@ -245,9 +244,7 @@ TEST_F(Manhattan, ATableSeenStraightFromAboveIsLevel) {
     PointCloud view;
     add_rectangle(view, {-0.6, -0.4, -1}, {1.2, 0, 0}, {0, 0.8, 0});
     const Eigen::Matrix3d turn = to_camera(90);
-    const Vec3 eye{0, 0, 0};
-    const Surfels s = make_surfels(*device, turned(view, turn), 0.02, {&eye, 1}, {});
-    const SceneFrame frame = find_scene_frame(*device, s, {.up = {}, .camera_up = Vec3{0, -1, 0}});
+    const SceneFrame frame = frame_of_view(turned(view, turn));
     EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5);
     EXPECT_FALSE(frame.note.empty());  // it may be a wall
 }
@@ -261,9 +258,7 @@ TEST_F(Manhattan, NormalsTellACamerasAxes) {
     PointCloud cloud = turned(view, turn);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const Vector3d n = turn * (i < wall ? Vector3d(0, -1, 0) : Vector3d(0, 0, 1));
-        cloud.nx.push_back(static_cast<float>(n[0]));
-        cloud.ny.push_back(static_cast<float>(n[1]));
-        cloud.nz.push_back(static_cast<float>(n[2]));
+        test::add_normal(cloud, n);
     }
     const Surfels s = make_surfels(*device, cloud, 0.02, {}, {});
     EXPECT_LT(degrees_off(find_scene_frame(*device, s, {}).axes[2], turn * Vector3d(0, 0, 1)), 0.5);
@@ -284,8 +279,7 @@ TEST_F(Manhattan, ANarrowRoomIsNotLaidOnItsSide) {
     }
     for (const double angle : {0.0, 8.0, 120.0}) {
         const Eigen::Matrix3d turn = tilt(angle, {0.3, -0.8, 0.4});
-        const Vector3d eye = turn * Vector3d(0.4, 0.5, 1.4);
-        const Vec3 viewpoint{eye[0], eye[1], eye[2]};
+        const Vec3 viewpoint = vec(turn * Vector3d(0.4, 0.5, 1.4));
         const Surfels s = make_surfels(*device, turned(corridor, turn), 0.03, {&viewpoint, 1}, {});
         const SceneFrame frame = find_scene_frame(*device, s, {});
         EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5) << angle;
@@ -340,7 +334,7 @@ TEST_F(Manhattan, WhatLooksTheSameFromBelowHasZUp) {
         const SceneFrame frame =
             find_scene_frame(*device, s, {.up = {}, .camera_up = {}, .sides_guessed = true});
         EXPECT_LT(degrees_off(frame.axes[2], {0, 0, 1}), 1);
-        EXPECT_NE(frame.note.find("ParseOptions::up"), std::string::npos) << frame.note;
+        EXPECT_THAT(frame.note, testing::HasSubstr("ParseOptions::up"));
     }
 }
 

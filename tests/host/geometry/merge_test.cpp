@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include "clouds.h"
 #include "host/geometry/split_scenes.h"
 
 namespace topple::geometry {
@@ -16,16 +17,19 @@ PrimitiveSet merged(const Surfels& surfels, const FreeSpace& free = {}) {
     return merge_convex(surfels, split(surfels, threads), {0, 0, 1}, free, threads);
 }
 
-struct Parsed {
-    Surfels surfels;
-    PrimitiveSet primitives;
-    explicit Parsed(const Builder& scene) : surfels(scene.surfels()) {
-        primitives = merged(surfels);
+// Bodies 0, 1 ... keep these shares of theirs under one label each, no two under the same.
+void expect_apart(const Builder& scene, const std::vector<double>& least_share,
+                  const FreeSpace& free = {}) {
+    const Surfels surfels = scene.surfels();
+    const PrimitiveSet primitives = merged(surfels, free);
+    std::set<std::int32_t> ids;
+    for (std::size_t body = 0; body < least_share.size(); ++body) {
+        const Majority of = majority(scene, surfels, primitives.label, static_cast<int>(body));
+        EXPECT_GT(of.share, least_share[body]) << "body " << body;
+        ids.insert(of.label);
     }
-    Majority of(const Builder& scene, int body) const {
-        return majority(scene, surfels, primitives.label, body);
-    }
-};
+    EXPECT_EQ(ids.size(), least_share.size());
+}
 
 TEST(Merge, NothingGivesNothing) {
     Surfels none;
@@ -40,9 +44,8 @@ TEST(Merge, ABoxIsOnePrimitive) {
     Builder scene;
     scene.noise_m = 0.002;
     scene.box({0, 0, 0}, {0.4, 0.3, 0.5}, 0);
-    const Parsed parsed(scene);
-    EXPECT_GT(parsed.of(scene, 0).share, 0.97);
-    EXPECT_EQ(parsed.primitives.model.front(), "merged");
+    expect_apart(scene, {0.97});
+    EXPECT_EQ(merged(scene.surfels()).model.front(), "merged");
 }
 
 TEST(Merge, WhatStandsOnATableStaysApart) {
@@ -51,13 +54,7 @@ TEST(Merge, WhatStandsOnATableStaysApart) {
     scene.box({-0.8, -0.5, 0.7}, {1.6, 1, 0.05}, 0);
     scene.box({-0.5, -0.2, 0.75}, {0.25, 0.2, 0.2}, 1);
     scene.tube({0.4, 0, 0.75}, 0.05, 0.2, true, 2);
-    const Parsed parsed(scene);
-    std::set<std::int32_t> ids;
-    for (int body = 0; body < 3; ++body) {
-        EXPECT_GT(parsed.of(scene, body).share, 0.85) << "body " << body;
-        ids.insert(parsed.of(scene, body).label);
-    }
-    EXPECT_EQ(ids.size(), 3u);
+    expect_apart(scene, {0.85, 0.85, 0.85});
 }
 
 TEST(Merge, FloorAndWallsOfARoomStayApart) {
@@ -66,10 +63,7 @@ TEST(Merge, FloorAndWallsOfARoomStayApart) {
     scene.face({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 0);
     scene.face({0, 0, 0}, {0, 2, 0}, {0, 0, 2}, 1);
     scene.face({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, 2);
-    const Parsed parsed(scene);
-    std::set<std::int32_t> ids;
-    for (int body = 0; body < 3; ++body) ids.insert(parsed.of(scene, body).label);
-    EXPECT_EQ(ids.size(), 3u);
+    expect_apart(scene, {0.5, 0.5, 0.5});
 }
 
 TEST(Merge, BoxesOfEqualHeightStayApart) {
@@ -77,11 +71,7 @@ TEST(Merge, BoxesOfEqualHeightStayApart) {
     scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
     scene.box({-0.4, 0, 0}, {0.3, 0.3, 0.3}, 1);
     scene.box({0.1, 0, 0}, {0.3, 0.3, 0.3}, 2);
-    const Parsed parsed(scene);
-    EXPECT_NE(parsed.of(scene, 1).label, parsed.of(scene, 2).label);
-    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
-    EXPECT_GT(parsed.of(scene, 1).share, 0.9);
-    EXPECT_GT(parsed.of(scene, 2).share, 0.9);
+    expect_apart(scene, {0.5, 0.9, 0.9});
 }
 
 // The air between a shelf's boards is thin too, but their faces look at each other.
@@ -89,8 +79,7 @@ TEST(Merge, FacesThatLookAtEachOtherStayApart) {
     Builder scene;
     scene.face({0, 0, 0.46}, {1, 0, 0}, {0, 0.4, 0}, 0);
     scene.face({0, 0, 0.5}, {0, 0.4, 0}, {1, 0, 0}, 1);
-    const Parsed parsed(scene);
-    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
+    expect_apart(scene, {0.5, 0.5});
 }
 
 TEST(Merge, ATableSeenInPiecesIsOne) {
@@ -98,9 +87,7 @@ TEST(Merge, ATableSeenInPiecesIsOne) {
     scene.face({0, 0, 0.7}, {1, 0, 0}, {0, 1, 0}, 0);
     scene.face({0, 1.3, 0.7}, {1, 0, 0}, {0, 1, 0}, 0);
     scene.box({0, 0.95, 0.72}, {1, 0.4, 0.5}, 1);
-    const Parsed parsed(scene);
-    EXPECT_GT(parsed.of(scene, 0).share, 0.95);
-    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
+    expect_apart(scene, {0.95, 0.5});
 }
 
 // The backs of two shelves are one plane just as a wall's pieces are.
@@ -109,9 +96,7 @@ TEST(Merge, UprightPiecesOfOnePlaneStayApart) {
     scene.face({0, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0);
     scene.face({0, 1.3, 0}, {0, 1, 0}, {0, 0, 2}, 1);
     scene.box({0.02, 0.95, 0}, {0.4, 0.4, 2.0}, 2);
-    const Parsed parsed(scene);
-    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
-    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 2).label);
+    expect_apart(scene, {0.5, 0.5, 0.5});
 }
 
 // Legs under the very corners of a seat: its sides and theirs are one plane.
@@ -124,13 +109,7 @@ TEST(Merge, LegsFlushWithASeatStayApart) {
     scene.box({0, 0, 0}, {0.05, 0.05, 0.42}, 1);
     scene.box({0.39, 0, 0}, {0.05, 0.05, 0.42}, 2);
     scene.box({0, 0.39, 0}, {0.05, 0.05, 0.42}, 3);
-    const Parsed parsed(scene);
-    std::set<std::int32_t> ids;
-    for (int body = 0; body < 4; ++body) {
-        EXPECT_GT(parsed.of(scene, body).share, 0.8) << "body " << body;
-        ids.insert(parsed.of(scene, body).label);
-    }
-    EXPECT_EQ(ids.size(), 4u);
+    expect_apart(scene, {0.8, 0.8, 0.8, 0.8});
 }
 
 // The arms of a sofa end in one plane with its seat.
@@ -143,13 +122,7 @@ TEST(Merge, ArmsFlushWithASofaStayApart) {
     scene.face({1.6, 0, 0}, {0, 0.8, 0}, {0, 0, 0.42}, 0);
     scene.box({0, 0, 0.42}, {0.2, 0.8, 0.2}, 1);
     scene.box({1.4, 0, 0.42}, {0.2, 0.8, 0.2}, 2);
-    const Parsed parsed(scene);
-    std::set<std::int32_t> ids;
-    for (int body = 0; body < 3; ++body) {
-        EXPECT_GT(parsed.of(scene, body).share, body == 0 ? 0.8 : 0.7) << "body " << body;
-        ids.insert(parsed.of(scene, body).label);
-    }
-    EXPECT_EQ(ids.size(), 3u);
+    expect_apart(scene, {0.8, 0.7, 0.7});
 }
 
 // Of a leg under a table only the two outer sides are seen: nothing but the space beside it, which
@@ -163,20 +136,11 @@ TEST(Merge, ALegSeenFromOutsideStaysApartFromItsTable) {
     scene.face({1.09, 0.04, 0}, {0.07, 0, 0}, {0, 0, 0.7}, 1);
     scene.face({1.16, 0.04, 0}, {0, 0.07, 0}, {0, 0, 0.7}, 1);
     scene.face({-0.5, 0.5, 0}, {2, 0, 0}, {0, 0, 0.65}, 2);  // what is seen below the table
-    PointCloud cloud;
-    for (const auto& p : scene.points) {
-        cloud.x.push_back(static_cast<float>(p.x()));
-        cloud.y.push_back(static_cast<float>(p.y()));
-        cloud.z.push_back(static_cast<float>(p.z()));
-    }
+    const PointCloud cloud = test::cloud_of(scene.points);
     const Surfels s = scene.surfels();
     const Vec3 eye{1.8, -1.2, 1.0};
     ThreadPool threads(2);
-    const FreeSpace free(s, cloud, {&eye, 1}, {}, threads);
-    const PrimitiveSet apart = merged(s, free);
-    EXPECT_NE(majority(scene, s, apart.label, 0).label, majority(scene, s, apart.label, 1).label);
-    EXPECT_GT(majority(scene, s, apart.label, 0).share, 0.9);
-    EXPECT_GT(majority(scene, s, apart.label, 1).share, 0.9);
+    expect_apart(scene, {0.9, 0.9}, FreeSpace(s, cloud, {&eye, 1}, {}, threads));
 }
 
 TEST(Merge, IdsFallInSizeAndCoverTheRegions) {
@@ -185,13 +149,13 @@ TEST(Merge, IdsFallInSizeAndCoverTheRegions) {
     scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
     scene.box({0, 0, 0}, {0.2, 0.2, 0.2}, 1);
     scene.ball({-0.5, -0.5, 0.1}, 0.1, 2);
-    const Parsed parsed(scene);
-    std::vector<std::uint64_t> count(parsed.primitives.regions.size(), 0);
-    for (const std::int32_t label : parsed.primitives.label)
+    const PrimitiveSet primitives = merged(scene.surfels());
+    std::vector<std::uint64_t> count(primitives.regions.size(), 0);
+    for (const std::int32_t label : primitives.label)
         if (label >= 0) ++count[static_cast<std::size_t>(label)];
     for (std::size_t k = 1; k < count.size(); ++k) EXPECT_GE(count[k - 1], count[k]);
-    EXPECT_EQ(parsed.primitives.model.size(), count.size());
-    EXPECT_EQ(parsed.primitives.model.front(), "plane");
+    EXPECT_EQ(primitives.model.size(), count.size());
+    EXPECT_EQ(primitives.model.front(), "plane");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "clouds.h"
 #include "geometry/surface_samples.h"
 
 namespace topple::test {
@@ -54,12 +55,8 @@ struct SampledFaces {
 
   private:
     void add(std::int32_t primitive, const Eigen::Vector3d& p, const Eigen::Vector3d& n) {
-        samples.x.push_back(static_cast<float>(p[0]));
-        samples.y.push_back(static_cast<float>(p[1]));
-        samples.z.push_back(static_cast<float>(p[2]));
-        samples.nx.push_back(static_cast<float>(n[0]));
-        samples.ny.push_back(static_cast<float>(n[1]));
-        samples.nz.push_back(static_cast<float>(n[2]));
+        test::add(samples, p);
+        test::add_normal(samples, n);
         samples.primitive.push_back(primitive);
     }
 };

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "clouds.h"
 #include "geometry/surfel_graph.h"
 
 namespace topple::geometry {
@@ -37,9 +38,7 @@ struct Labelled {
             s.cx.push_back(cell[0]);
             s.cy.push_back(cell[1]);
             s.cz.push_back(cell[2]);
-            s.x.push_back(static_cast<float>(p.x));
-            s.y.push_back(static_cast<float>(p.y));
-            s.z.push_back(static_cast<float>(p.z));
+            test::add(s, p.x, p.y, p.z);
             face.push_back(p.face);
             primitive.push_back(p.primitive);
         }

@@ -8,7 +8,8 @@
 #include <limits>
 #include <numeric>
 
-#include "geometry_random.h"
+#include "clouds.h"
+#include "random.h"
 
 namespace topple::geometry {
 namespace {
@@ -21,13 +22,9 @@ struct ScannedPoints {
     SceneFrame frame{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, true, "", "", 0};
 
     void add(const Vec3& p, const Vec3& normal, std::int32_t of = 0) {
-        cloud.x.push_back(static_cast<float>(p[0]));
-        cloud.y.push_back(static_cast<float>(p[1]));
-        cloud.z.push_back(static_cast<float>(p[2]));
+        test::add(cloud, p);
         surfels.of_point.push_back(static_cast<std::uint32_t>(surfels.nx.size()));
-        surfels.nx.push_back(static_cast<float>(normal[0]));
-        surfels.ny.push_back(static_cast<float>(normal[1]));
-        surfels.nz.push_back(static_cast<float>(normal[2]));
+        test::add_normal(surfels, normal);
         primitive.push_back(of);
     }
     void colour(float l, float a, float b) {

@@ -8,20 +8,17 @@
 #include <cmath>
 #include <map>
 
+#include "clouds.h"
 #include "device/devices.h"
 #include "geometry/surfel_graph.h"
-#include "geometry_random.h"
+#include "random.h"
 
 namespace topple::geometry {
 namespace {
 
 class Discs : public ::testing::Test {
   protected:
-    void add(double x, double y, double z) {
-        cloud.x.push_back(static_cast<float>(x));
-        cloud.y.push_back(static_cast<float>(y));
-        cloud.z.push_back(static_cast<float>(z));
-    }
+    void add(double x, double y, double z) { test::add(cloud, x, y, z); }
     // Points at random over a square of this side from a corner.
     void scatter(double x, double y, double side, double per_m2) {
         for (int n = 0; n < static_cast<int>(side * side * per_m2); ++n)
@@ -108,12 +105,8 @@ TEST_F(Discs, AreCutWhereTheFacesOfNeighboursCross) {
         s.cy.push_back(cell[1]);
         s.cz.push_back(cell[2]);
         const auto [at, normal] = surfel;
-        s.x.push_back(static_cast<float>(at[0]));
-        s.y.push_back(static_cast<float>(at[1]));
-        s.z.push_back(static_cast<float>(at[2]));
-        s.nx.push_back(static_cast<float>(normal[0]));
-        s.ny.push_back(static_cast<float>(normal[1]));
-        s.nz.push_back(static_cast<float>(normal[2]));
+        test::add(s, at);
+        test::add_normal(s, normal);
     }
     connect_surfels(s, 2 * pitch, pool);
     const std::vector<float> radii(s.size(), 0.025F);

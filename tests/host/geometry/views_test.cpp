@@ -4,19 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clouds.h"
 #include "device/devices.h"
-#include "geometry_random.h"
 #include "points/single_scan.h"
 #include "points/virtual_views.h"
+#include "random.h"
 
 namespace topple::geometry {
 namespace {
 
-void add(PointCloud& cloud, const Vec3& p) {
-    cloud.x.push_back(static_cast<float>(p[0]));
-    cloud.y.push_back(static_cast<float>(p[1]));
-    cloud.z.push_back(static_cast<float>(p[2]));
-}
+using test::add;
 
 // What a camera at the origin sees: a wall two metres ahead and a ball before it, z ahead.
 PointCloud scan() {

@@ -7,7 +7,7 @@
 
 #include "core/thread_pool.h"
 #include "geometry/algebraic_model.h"
-#include "host/geometry/geometry_random.h"
+#include "random.h"
 
 namespace topple::solids {
 namespace {
