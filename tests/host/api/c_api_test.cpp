@@ -56,9 +56,9 @@ TEST_F(CApi, ErrorsSayWhatIsWrong) {
               0u);
     options.tile_m = 0;
     options.max_memory_bytes = 1;
-    EXPECT_NE(message(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_INPUT)
-                  .find(" of max_memory_bytes: allow that much, or use a larger voxel_m"),
-              std::string::npos);
+    EXPECT_THAT(
+        message(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_INPUT),
+        testing::HasSubstr(" of max_memory_bytes: allow that much, or use a larger voxel_m"));
     options.max_memory_bytes = 0;
     options.disturbances = 9;
     message(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_USAGE);

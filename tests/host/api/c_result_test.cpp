@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,7 +55,7 @@ TEST_F(CApi, TakesCorrections) {
     options.corrections_json = "{}";
     topple_result_release(result);
     EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_INPUT);
-    EXPECT_NE(std::string(status.message).find("schema"), std::string::npos) << status.message;
+    EXPECT_THAT(status.message, testing::HasSubstr("schema"));
 }
 
 // Names are those of scene.json, of what is nested with a dot.
@@ -94,7 +96,7 @@ TEST_F(CApi, GivesNumbersByTheirNames) {
                                     {"object", "fall."},
                                     {"body", "mass_kg"}}) {
         EXPECT_EQ(code(of, 1, field), TOPPLE_ERROR_USAGE) << of << " " << field;
-        EXPECT_NE(std::string(status.message).find(field), std::string::npos) << status.message;
+        EXPECT_THAT(status.message, testing::HasSubstr(field));
     }
     EXPECT_EQ(code("object", 99, "mass_kg"), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(code(nullptr, 0, "mass_kg"), TOPPLE_ERROR_USAGE);
@@ -119,7 +121,7 @@ TEST_F(CApi, SaysWhatMayBeTouched) {
     EXPECT_EQ(asked(nullptr, 2 * crate.slide_N, 0), 0);
     EXPECT_EQ(asked(nullptr, 0, crate.mass_kg), 0);
     EXPECT_EQ(asked(upwards, 1, 0), -TOPPLE_ERROR_USAGE);
-    EXPECT_NE(std::string(status.message).find("expected a level way"), std::string::npos);
+    EXPECT_THAT(status.message, testing::HasSubstr("expected a level way"));
     EXPECT_EQ(asked(level, -1, 0), -TOPPLE_ERROR_USAGE);
     int stays = -1;
     EXPECT_EQ(topple_result_stays(result, 1, nullptr, level, 1, 0, 0.02, &stays, &status),
@@ -129,6 +131,7 @@ TEST_F(CApi, SaysWhatMayBeTouched) {
               TOPPLE_ERROR_USAGE);
 }
 
+// The structs are filled from the same list of fields as scene.json: one member of each kind.
 TEST_F(CApi, ParsesAsTheLibraryDoes) {
     ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
     EXPECT_STREQ(status.message, "");
@@ -167,59 +170,31 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
         EXPECT_TRUE(std::isnan(risk)) << "not asked for";
         EXPECT_EQ(object.unsafety_category, o.unsafety_category);
         EXPECT_EQ(object.unsafety_certain != 0, o.unsafety_certain);
-        EXPECT_EQ(object.hits_J, o.fall.hits_J);
-        EXPECT_EQ(object.lands_m[0], o.fall.lands_m[0]);
-        EXPECT_EQ(object.lands_on, o.fall.lands_on);
         EXPECT_EQ(object.falls != 0, o.fall.falls);
         EXPECT_TRUE(std::isnan(object.people_share)) << "nobody was asked for";
         EXPECT_EQ(chance, o.fall_chance.at("wind"));
         EXPECT_EQ(topple_result_risk(result, n, "flood", &risk, nullptr, &status),
                   TOPPLE_ERROR_USAGE);
-        EXPECT_NE(std::string(status.message).find("earthquake"), std::string::npos);
-        const topple::DirectedBarrier& directed = o.barrier_by_direction;
-        ASSERT_EQ(object.blow_heights, directed.height_m.size());
-        for (std::size_t b = 0; b < directed.blow_J.size(); ++b) {
-            EXPECT_EQ(object.blow_barrier_J[b], directed.blow_J[b]);
-            EXPECT_EQ(object.blow_barrier_Ns[b], directed.blow_Ns[b]);
-        }
-        EXPECT_EQ(std::isnan(object.support_height_m), std::isnan(o.support_height_m));
-        if (!std::isnan(o.support_height_m)) {
-            EXPECT_EQ(object.support_height_m, o.support_height_m);
-            EXPECT_EQ(object.center_height_m, o.center_height_m);
-        }
-        for (std::size_t b = 0; b < directed.push_J.size(); ++b)
-            EXPECT_EQ(object.push_barrier_J[b], directed.push_J[b]);
-        for (std::size_t b = 0; b < directed.push_N.size(); ++b) {
-            EXPECT_EQ(object.push_by_direction_N[b], directed.push_N[b]);
-            EXPECT_EQ(object.push_error_by_direction_N[b], directed.push_error_N[b]);
-            EXPECT_EQ(object.push_direction[3 * b + 1], directed.direction[b][1]);
-        }
-        EXPECT_EQ(object.push_by_direction_N == nullptr, directed.push_N.empty());
-        ASSERT_EQ(object.why_edge_ends, o.why.edge_m.size());
-        if (object.why_edge_ends > 0) {
-            EXPECT_EQ(object.why_edge_m[4], o.why.edge_m[1][1]);
-        }
-        EXPECT_EQ(object.why_way_m, o.why.way_m);
-        EXPECT_EQ(object.why_drop_m, o.why.drop_m);
-        EXPECT_EQ(object.why_lands_on, o.why.lands_on);
-        ASSERT_EQ(object.stands_on_count, o.why.stands_on.size());
-        for (std::size_t s = 0; s < o.why.stands_on.size(); ++s)
-            EXPECT_EQ(object.stands_on[s], o.why.stands_on[s]);
+        EXPECT_THAT(status.message, testing::HasSubstr("earthquake"));
         EXPECT_EQ(object.advice_kind, o.advice.kind);
-        EXPECT_EQ(object.advice_move_m[0], o.advice.move_m[0]);
-        EXPECT_EQ(object.hold_N, o.advice.hold_N);
         EXPECT_EQ(object.why, o.why.sentence);
         EXPECT_EQ(object.action, o.advice.action);
-        EXPECT_EQ(object.piece_of, o.piece_of);
-        EXPECT_EQ(object.piece_probability, o.piece_probability);
-        EXPECT_EQ(object.box_middle_m[0], o.box_middle_m[0]);
-        EXPECT_EQ(object.box_middle_m[2], o.box_middle_m[2]);
+        EXPECT_EQ(object.push_by_direction_N == nullptr, o.barrier_by_direction.push_N.empty());
         ASSERT_EQ(object.instability_count, o.instability.size());
         if (!o.instability.empty()) {
             EXPECT_EQ(object.instability[0].S_J, o.instability[0].S_J);
         }
-        ASSERT_EQ(object.primitive_count, o.primitives.size());
-        EXPECT_EQ(object.primitives[0], o.primitives[0]);
+        EXPECT_EQ(object.lands_m[0], o.fall.lands_m[0]);
+        EXPECT_EQ(object.lands_on, o.fall.lands_on);
+        ASSERT_EQ(object.stands_on_count, o.why.stands_on.size());
+        EXPECT_TRUE(std::ranges::equal(std::span(object.stands_on, object.stands_on_count),
+                                       o.why.stands_on));
+        const topple::DirectedBarrier& directed = o.barrier_by_direction;
+        ASSERT_EQ(object.blow_heights, directed.height_m.size());
+        EXPECT_TRUE(
+            std::equal(directed.blow_Ns.begin(), directed.blow_Ns.end(), object.blow_barrier_Ns));
+        EXPECT_TRUE(
+            std::equal(directed.push_N.begin(), directed.push_N.end(), object.push_by_direction_N));
     }
     topple_primitive primitive{};
     primitive.size = sizeof(primitive);
@@ -245,7 +220,7 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
     EXPECT_TRUE(std::filesystem::exists(path("mjcf/scene.xml")));
     EXPECT_TRUE(std::filesystem::exists(path("mjcf/bodies.json")));
     EXPECT_EQ(topple_result_export(result, "blend", exported.c_str(), &status), TOPPLE_ERROR_USAGE);
-    EXPECT_NE(std::string(status.message).find("\"blend\" is no format"), std::string::npos);
+    EXPECT_THAT(status.message, testing::HasSubstr("\"blend\" is no format"));
     EXPECT_EQ(topple_result_export(result, "mjcf", "", &status), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_result_export(result, nullptr, exported.c_str(), &status), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_result_export(nullptr, "mjcf", exported.c_str(), &status), TOPPLE_ERROR_USAGE);

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
-#include "core/random.h"
 #include "host/api/c_api.h"
 #include "topple/stages.h"
 
@@ -77,38 +74,6 @@ TEST_F(CApi, StagesAreThoseOfTheLibrary) {
     EXPECT_EQ(topple_volume_fill(volume, device, 2, nullptr, 0, &filled, &status), TOPPLE_OK);
     EXPECT_GT(filled, 0u);
     topple_volume_release(volume);
-}
-
-// What the C interface adds to a stage: the same call with and without it, in turns.
-TEST_F(CApi, CostsNothingOnAMillionPoints) {
-    topple::Random random(3);
-    PointCloud plane;
-    for (int n = 0; n < 1'000'000; ++n) {
-        plane.x.push_back(static_cast<float>(8 * random.uniform()));
-        plane.y.push_back(static_cast<float>(8 * random.uniform()));
-        plane.z.push_back(static_cast<float>(0.01 * random.uniform()));
-    }
-    const topple_cloud million = c_cloud(plane);
-    const auto own = device::open_device("native", 2);
-    std::vector<float> nx(plane.size()), ny = nx, nz = nx;
-    const auto seconds = [](const auto& call) {
-        const auto start = std::chrono::steady_clock::now();
-        call();
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    double c = std::numeric_limits<double>::infinity(), cpp = c;
-    for (int round = 0; round < 15; ++round) {
-        c = std::min(c, seconds([&] {
-                         topple_normals(device, &million, 0.03, nullptr, nx.data(), ny.data(),
-                                        nz.data(), &status);
-                     }));
-        EXPECT_EQ(status.code, TOPPLE_OK) << status.message;
-        cpp = std::min(cpp,
-                       seconds([&] { stages::normals(*own, plane, 0.03, nullptr, nx, ny, nz); }));
-    }
-    std::printf("normals of 1e6 points: %.1f ms in C, %.1f ms in C++: %+.2f %%\n", 1e3 * c,
-                1e3 * cpp, 100 * (c / cpp - 1));
-    EXPECT_LT(c, 1.25 * cpp);  // a copy of the points would show even on a busy machine
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "safety/action.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -65,7 +66,7 @@ TEST_F(Action, is_to_see_that_what_is_tall_and_heavy_is_fastened) {
     o_.release_J = 78;
     EXPECT_EQ(text(), "No need to act.");
     o_.instability = {{20, 595}};
-    EXPECT_NE(text().find("tall and heavy"), std::string::npos) << text();
+    EXPECT_THAT(text(), testing::HasSubstr("tall and heavy"));
 }
 
 TEST_F(Action, is_to_look_where_only_its_errors_upset_it) {
@@ -79,7 +80,7 @@ TEST_F(Action, is_to_look_where_only_its_errors_upset_it) {
               "to 123 J: check that it stands firm.");
     // Harder pushes than the easiest may free more.
     o_.instability = {{2, 0}, {9, 229}};
-    EXPECT_NE(text().find("with up to 229 J"), std::string::npos) << text();
+    EXPECT_THAT(text(), testing::HasSubstr("with up to 229 J"));
 }
 
 TEST_F(Action, is_to_see_what_was_not_seen) {

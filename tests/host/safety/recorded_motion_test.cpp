@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "errors.h"
 #include "kernels/device_harness.h"
 #include "room.h"
 #include "safety/human/body_parts.h"
@@ -17,10 +18,11 @@
 #include "safety/human/human_field.h"
 #include "safety/human/secondary_motion.h"
 #include "safety/human/walkable_map.h"
-#include "topple/error.h"
 
 namespace topple::safety {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr double rate_hz = 100, stature_m = 1.75;
 
@@ -174,23 +176,18 @@ TEST(RecordedMotion, SeveralAreEachAsOftenAndMissNothingThatOneHas) {
 
 TEST(RecordedMotion, RefusesWhatTellsNothing) {
     const auto refused = [](const BodyMotion& motion) {
-        try {
-            motion_of(motion);
-            return std::string();
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
+        return test::message_of([&] { motion_of(motion); }, ErrorKind::input);
     };
-    EXPECT_NE(refused({}).find("no motion"), std::string::npos);
+    EXPECT_THAT(refused({}), HasSubstr("no motion"));
     BodyMotion motion = walker(0, 1);
     for (auto& track : motion.track) track.assign(track.size(), Vec3{1, 1, 1});
-    EXPECT_NE(refused(motion).find("at one place"), std::string::npos);
+    EXPECT_THAT(refused(motion), HasSubstr("at one place"));
     motion = walker(0, 1);
     for (std::size_t j = 1; j < body_joint_count; ++j) motion.track[j].clear();
-    EXPECT_NE(refused(motion).find("faces"), std::string::npos);
+    EXPECT_THAT(refused(motion), HasSubstr("faces"));
     motion = walker(0, 1);
     motion.track[3].pop_back();
-    EXPECT_NE(refused(motion).find("different numbers"), std::string::npos);
+    EXPECT_THAT(refused(motion), HasSubstr("different numbers"));
     HumanOptions standing;
     standing.walking_speed_m_s = 0;
     EXPECT_THROW(motion_of(walker(0, 1), standing), Error);

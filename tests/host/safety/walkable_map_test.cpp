@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "safety/human/walkable_map.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +52,7 @@ TEST(WalkableMap, BridgesSmallHolesOnlyAndSaysSo) {
     EXPECT_FALSE(walkable(map, 2.8, 1.0));
     EXPECT_GT(map.bridged, 0);
     ASSERT_EQ(map.notes.size(), 1u);
-    EXPECT_NE(map.notes[0].find("bridged"), std::string::npos);
+    EXPECT_THAT(map.notes[0], testing::HasSubstr("bridged"));
 }
 
 TEST(WalkableMap, WallsAndStepsSeparate) {
@@ -81,12 +82,12 @@ TEST(WalkableMap, SaysWhyNobodyWalks) {
     test::Room room(0.02);
     EXPECT_EQ(walkable_map(room.surroundings(), {}).notes.size(), 1u);
     room.box(0, 1, 0, 1, -0.02, 0);
-    EXPECT_NE(walkable_map(room.surroundings(), {}).notes.at(0).find("floor"), std::string::npos);
+    EXPECT_THAT(walkable_map(room.surroundings(), {}).notes.at(0), testing::HasSubstr("floor"));
     test::Room full(0.02);
     full.floor(0, 1, 0, 1);
     full.box(0.2, 0.8, 0.2, 0.8, 0.5, 1);
     full.box(0, 1, 0, 1, 0.6, 0.7);
-    EXPECT_NE(walkable_map(full.surroundings(), {}).notes.at(0).find("no room"), std::string::npos);
+    EXPECT_THAT(walkable_map(full.surroundings(), {}).notes.at(0), testing::HasSubstr("no room"));
 }
 
 // A table top that was scanned alone looks like a floor.
