@@ -6,8 +6,8 @@
   estimates.py --program TOPPLE --work DIR --inputs SCAN... [--threads N] [--table FILE]
   estimates.py --fit TABLE...
 
-Each seed is an input: rooms and buildings of `topple generate` as every scan, boxes and houses of its own as clouds and
-meshes, maps and volumes of an earlier parse; with a voxel and tiles by chance; or the inputs are given. It is parsed once as it is, and once with a
+Each seed is an input: rooms and buildings of `topple generate` as every scan, or the mesh, map and volume of an earlier
+parse; with a voxel and tiles by chance; or the inputs are given. It is parsed once as it is, and once with a
 --max-memory near the estimate, which must be refused or kept. Printed is each ratio of estimate to truth, and at the
 end the shares within a quarter, by kind. Time is compared by the processor's, which a busy machine leaves about as it
 is, and by the clock. Exit code 1 where a limit was not kept.
@@ -22,7 +22,6 @@ import os
 import pathlib
 import random
 import shutil
-import struct
 import subprocess
 import sys
 import time
@@ -52,104 +51,13 @@ class Ran:
         self.peak_bytes = 1024 * used.ru_maxrss
 
 
-# Solids as quadrilaterals (origin, edge, edge), which face outwards.
-def box(low, size):
-    x, y, z = ((size[0], 0, 0), (0, size[1], 0), (0, 0, size[2]))
-    far = tuple(a + b for a, b in zip(low, size))
-    return [(low, y, x), (low, x, z), (low, z, y), ((low[0], low[1], far[2]), x, y), ((far[0], low[1], low[2]), y, z),
-            ((low[0], far[1], low[2]), z, x)]
-
-
-def boxes(chance):
-    side = chance.uniform(1, 5)
-    faces = [((-side / 2, -side / 2, 0), (side, 0, 0), (0, side, 0))]
-    for _ in range(chance.randrange(1, 12)):
-        size = [chance.uniform(0.1, 0.8) for _ in range(3)]
-        low = tuple(chance.uniform(-side / 2, side / 2 - s) for s in size[:2]) + (0,)
-        faces += box(low, size)[1:]
-    return faces
-
-
-def house(chance):
-    """Rooms in a row, seen from within, with boxes in them and on one another."""
-    faces, x = [], 0
-    for _ in range(chance.choice([1, 1, 1, 2, 3])):
-        w, d, h = chance.uniform(2, 5), chance.uniform(2, 5), chance.uniform(2.3, 3)
-        faces += [((x, 0, 0), (w, 0, 0), (0, d, 0)), ((x, 0, h), (0, d, 0), (w, 0, 0)),
-                  ((x, 0, 0), (0, d, 0), (0, 0, h)), ((x + w, 0, 0), (0, 0, h), (0, d, 0)),
-                  ((x, 0, 0), (0, 0, h), (w, 0, 0)), ((x, d, 0), (w, 0, 0), (0, 0, h))]
-        for _ in range(chance.randrange(3, 15)):
-            size = [chance.uniform(0.1, 0.9) for _ in range(3)]
-            low = (x + chance.uniform(0.05, w - size[0] - 0.05), chance.uniform(0.05, d - size[1] - 0.05), 0)
-            faces += box(low, size)
-            if chance.random() < 0.5:
-                faces += box((low[0] + 0.01, low[1] + 0.01, size[2]), [chance.uniform(0.05, s) for s in size])
-        x += w + 0.12
-    return faces
-
-
-def points_of(faces, spacing, noise, chance):
-    for origin, u, v in faces:
-        across, up = (max(1, int(math.hypot(*e) / spacing)) for e in (u, v))
-        for i in range(across):
-            for j in range(up):
-                a, b = (i + chance.random()) / across, (j + chance.random()) / up
-                yield tuple(o + a * p + b * q + chance.gauss(0, noise) for o, p, q in zip(origin, u, v))
-
-
-def write_cloud(file, points):
-    if file.suffix == '.xyz':
-        file.write_text(''.join('%.4f %.4f %.4f\n' % p for p in points))
-    elif file.suffix == '.las':
-        header = bytearray(227)
-        header[0:4] = b'LASF'
-        header[24:26] = bytes((1, 2))
-        struct.pack_into('<HII', header, 94, 227, 227, 0)
-        struct.pack_into('<BHI', header, 104, 0, 20, len(points))
-        struct.pack_into('<6d', header, 131, 0.001, 0.001, 0.001, 0, 0, 0)
-        file.write_bytes(bytes(header) + b''.join(struct.pack('<3i8x', *(round(1000 * c) for c in p)) for p in points))
-    else:
-        file.write_bytes(('ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\n'
-                          'property float y\nproperty float z\nend_header\n' % len(points)).encode() +
-                         b''.join(struct.pack('<3f', *p) for p in points))
-
-
-def write_mesh(file, faces):
-    corners = [[tuple(o + a * p + b * q for o, p, q in zip(origin, u, v)) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
-               for origin, u, v in faces]
-    vertices = [c for face in corners for c in face]
-    quads = [(n, n + 1, n + 2, n + 3) for n in range(0, len(vertices), 4)]
-    if file.suffix == '.obj':
-        file.write_text(''.join('v %g %g %g\n' % c for c in vertices) +
-                        ''.join('f %d %d %d %d\n' % tuple(n + 1 for n in q) for q in quads))
-    elif file.suffix == '.stl':
-        triangles = [t for q in quads for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))]
-        file.write_bytes(b'\0' * 80 + struct.pack('<I', len(triangles)) + b''.join(
-            struct.pack('<12fH', 0, 0, 0, *(x for n in t for x in vertices[n]), 0) for t in triangles))
-    else:
-        file.write_text('ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\n'
-                        'property float z\nelement face %d\nproperty list uchar int vertex_indices\n'
-                        'end_header\n' % (len(vertices), len(quads)) +
-                        ''.join('%g %g %g\n' % c for c in vertices) + ''.join('4 %d %d %d %d\n' % q for q in quads))
-
-
 def make(program, folder, seed):
     """What the input is, its path, and the options of its parse."""
     chance = random.Random(seed)
     options = []
     if chance.random() < 0.4:
         options += ['--voxel', '%.3g' % chance.uniform(0.02, 0.05)]
-    kind = chance.choices(['room', 'building', 'boxes', 'mesh', 'derived'], [50, 10, 15, 13, 12])[0]
-    if kind == 'boxes':
-        file = folder / ('boxes' + chance.choice(['.ply', '.xyz', '.las']))
-        spacing = chance.uniform(0.01, 0.05)
-        write_cloud(file, list(points_of(boxes(chance), spacing, chance.uniform(0, 0.2) * spacing, chance)))
-        return 'boxes' + file.suffix, file, options
-    if kind == 'mesh':
-        file = folder / ('mesh' + chance.choice(['.ply', '.obj', '.stl']))
-        faces = house(chance) if chance.random() < 0.4 else boxes(chance)
-        write_mesh(file, faces)
-        return ('house' if len(faces) > 80 else 'mesh') + file.suffix, file, options
+    kind = chance.choices(['room', 'building', 'derived'], [70, 12, 18])[0]
     if kind == 'building':
         points = chance.randrange(30_000, 150_000)
         words = ['--building', '--points', points, '--spacing', '%.3g' % chance.uniform(0.03, 0.06)]
@@ -227,7 +135,7 @@ def kind_of(row):
         return 'clouds in blocks'
     if row['frames']:
         return 'single frames' if row['frames'] == 1 else 'frames with poses'
-    if row['what'].startswith(('mesh', 'house')) or row['what'].endswith('.glb'):
+    if row['what'].endswith(('.obj', '.stl', '.glb')):
         return 'meshes'
     if row['what'].endswith(('.bt', '.vdb')):
         return 'maps and volumes'

@@ -90,8 +90,7 @@ class Job : public Program {
         ASSERT_NE(first, std::string::npos) << job.err;
         EXPECT_EQ(job.err.find("topple: ", first + 1), std::string::npos) << job.err;
         const std::string line = job.err.substr(first, job.err.find('\n', first) - first);
-        for (const auto& part : parts)
-            EXPECT_NE(line.find(part), std::string::npos) << line << "\nshould say: " << part;
+        for (const auto& part : parts) EXPECT_THAT(line, testing::HasSubstr(part));
     }
 
     fs::path work() const {
@@ -179,7 +178,7 @@ TEST_F(Job, a_killed_rank_ends_it_and_the_next_job_goes_on) {
         if (!fs::exists(in("out"))) break;
     }
     EXPECT_NE(broken.code, 0);
-    EXPECT_NE(broken.err.find("signal 9"), std::string::npos) << broken.err;
+    EXPECT_THAT(broken.err, testing::HasSubstr("signal 9"));
     EXPECT_FALSE(fs::exists(in("out")));
     std::vector<fs::path> blocks = files("block-");
     const std::vector<fs::path> cells = files("cells-");
@@ -196,7 +195,7 @@ TEST_F(Job, a_killed_rank_ends_it_and_the_next_job_goes_on) {
     const Finished next = job(ranks(2, parse("out")));
     EXPECT_EQ(next.code, 0) << next.err;
     for (const std::string& name : {cells[0].filename().string(), blocks[0].filename().string()})
-        EXPECT_NE(next.err.find(name + " is damaged"), std::string::npos) << name << next.err;
+        EXPECT_THAT(next.err, testing::HasSubstr(name + " is damaged"));
     EXPECT_TRUE(output("out") == alone());
     EXPECT_FALSE(fs::exists(work()));
 }

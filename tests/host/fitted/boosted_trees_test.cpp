@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "errors.h"
 #include "fitted/model_tables.h"
 #include "topple/error.h"
 
@@ -65,13 +66,8 @@ TEST(BoostedTrees, AFeatureThatNothingKnowsIsNamed) {
     constexpr std::array<std::string_view, 2> others{"gap", "weight"};
     TreeTable unknown = model;
     unknown.features = others;
-    try {
-        const BoostedTrees trees(unknown, "test.json", columns);
-        FAIL() << "was taken";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_THAT(error.what(), AllOf(HasSubstr("test.json"), HasSubstr("weight")));
-    }
+    test::expect_input_error([&] { const BoostedTrees trees(unknown, "test.json", columns); },
+                             {"test.json", "weight"});
 }
 
 TEST(Odds, AndProbabilitiesAreInverse) {

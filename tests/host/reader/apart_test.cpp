@@ -116,13 +116,7 @@ TEST_F(Apart, what_crashes_there_is_an_error_here) {
 TEST_F(Apart, a_reader_that_does_not_start_says_so) {
     const auto file = write("a.obj", test::box_obj());
     const auto message = [&] {
-        try {
-            read_scan_apart(file, 1, {});
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::input);
-            return std::string(error.what());
-        }
-        return std::string();
+        return test::message_of([&] { read_scan_apart(file, 1, {}); }, ErrorKind::input);
     };
     for (const char* code : {"126", "127"}) {
         take_script("exit " + std::string(code));
@@ -210,13 +204,9 @@ TEST_F(Apart, what_polls_ends_it) {
 
 TEST_F(Apart, says_where_a_reader_is_missing) {
     setenv("TOPPLE_READERS", folder_.c_str(), 1);
-    try {
-        read_scan_apart(write("a.obj", test::box_obj()), 1, {});
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(std::string(error.what()).find("TOPPLE_READERS"), std::string::npos);
-    }
+    const auto file = write("a.obj", test::box_obj());
+    EXPECT_THAT(test::message_of([&] { read_scan_apart(file, 1, {}); }, ErrorKind::usage),
+                testing::HasSubstr("TOPPLE_READERS"));
 }
 
 }  // namespace

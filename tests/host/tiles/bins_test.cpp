@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "clouds.h"
 #include "core/random.h"
 #include "lab/temporary_folder.h"
+#include "errors.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 #include "scale/work_files.h"
@@ -25,9 +27,7 @@ PointCloud scattered(std::size_t count) {
     Random random(3);
     PointCloud cloud;
     for (std::size_t n = 0; n < count; ++n) {
-        cloud.x.push_back(static_cast<float>(random.uniform(-7, 8)));
-        cloud.y.push_back(static_cast<float>(random.uniform(-1, 1)));
-        cloud.z.push_back(static_cast<float>(random.uniform(0, 0.2)));
+        test::add(cloud, random.uniform(-7, 8), random.uniform(-1, 1), random.uniform(0, 0.2));
     }
     return cloud;
 }
@@ -123,18 +123,9 @@ TEST(Spill, RefusesPointsThatAreSpreadTooThin) {
     scenes::TemporaryFolder folder("topple_tiles");
     PointSpill out(folder.path(), 1 << 20);
     PointCloud wide;
-    for (int n = 0; n < 3000; ++n) {
-        wide.x.push_back(static_cast<float>(n * 6));
-        wide.y.push_back(0);
-        wide.z.push_back(0);
-    }
-    try {
-        out.add(wide, "wide.ply");
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_THAT(error.what(), ::testing::HasSubstr("wide.ply"));
-        EXPECT_THAT(error.what(), ::testing::HasSubstr("ParseOptions::unit_m = 0.001"));
-    }
+    for (int n = 0; n < 3000; ++n) test::add(wide, n * 6, 0, 0);
+    test::expect_input_error([&] { out.add(wide, "wide.ply"); },
+                             {"wide.ply", "ParseOptions::unit_m = 0.001"});
 }
 
 TEST(Spill, ACutFileIsNoticed) {

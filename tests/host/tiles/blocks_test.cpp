@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lab/temporary_folder.h"
+#include "clouds.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 
@@ -28,9 +29,7 @@ Cut cut(double ceiling_m, double floor_m, double voxel_m) {
     for (const double z : {0.01, ceiling_m, floor_m, floor_m + ceiling_m})
         for (double x = -0.06; x < 7; x += 0.05)
             for (double y = 0.2; y < 4.5; y += 0.05) {
-                cloud.x.push_back(static_cast<float>(x));
-                cloud.y.push_back(static_cast<float>(y));
-                cloud.z.push_back(static_cast<float>(z));
+                test::add(cloud, x, y, z);
             }
     const scenes::TemporaryFolder folder("topple_blocks");
     PointSpill out(folder.path(), 1 << 20);

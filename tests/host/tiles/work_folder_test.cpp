@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lab/temporary_folder.h"
+#include "errors.h"
 #include "scale/binary_file.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
@@ -46,13 +47,7 @@ class WorkFolders : public ::testing::Test {
     // The folder is refused, and all in it stays.
     void expect_refused(const std::string& says) const {
         const std::set<std::string> before = names_in(path_);
-        try {
-            const WorkFolder work(path_, "cloud");
-            ADD_FAILURE() << "was taken";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::input);
-            EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
-        }
+        test::expect_input_error([&] { const WorkFolder work(path_, "cloud"); }, {says});
         EXPECT_EQ(names_in(path_), before);
     }
 
@@ -142,13 +137,7 @@ TEST_F(WorkFolders, BeginAnewWhereTheManifestIsDamaged) {
 
 TEST_F(WorkFolders, AreWorkedInByOneProcessAtATime) {
     const WorkFolder mine(path_, "cloud");
-    try {
-        const WorkFolder other(path_, "cloud");
-        FAIL() << "was taken";
-    } catch (const Error& error) {
-        const std::string pid = "(process " + std::to_string(::getpid()) + ")";
-        EXPECT_NE(std::string(error.what()).find(pid), std::string::npos) << error.what();
-    }
+    expect_refused("(process " + std::to_string(::getpid()) + ")");
     // Who is killed leaves no lock.
     const fs::path path = outer_.path() / "killed";
     const pid_t child = ::fork();
