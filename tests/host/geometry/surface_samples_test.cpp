@@ -95,20 +95,6 @@ ScannedPoints scattered_points(double side_m, std::uint64_t seed) {
     return scan;
 }
 
-TEST(SurfaceSamples, TheOrderOfPointsPlaysNoPart) {
-    const ScannedPoints scan = scattered_points(0.015, 1);
-    ScannedPoints other;
-    for (std::size_t n = scan.cloud.size(); n-- > 0;) {
-        other.add({scan.cloud.x[n], scan.cloud.y[n], scan.cloud.z[n]},
-                  {scan.surfels.nx[n], scan.surfels.ny[n], scan.surfels.nz[n]}, scan.primitive[n]);
-    }
-    const SurfaceSamples a = scan.samples(0.03), b = other.samples(0.03);
-    EXPECT_EQ(a.primitive, b.primitive);
-    EXPECT_EQ(a.spacing_m, b.spacing_m);
-    const auto of_a = columns_of(a), of_b = columns_of(b);
-    for (std::size_t c = 0; c < of_a.size(); ++c) EXPECT_EQ(*of_a[c], *of_b[c]) << c;
-}
-
 TEST(SurfaceSamples, TheSpacingIsThatOfThePointsWhereTheyAreSparse) {
     constexpr double edge_m = 0.02;
     for (const double side_m : {0.03, 0.04, 0.05}) {

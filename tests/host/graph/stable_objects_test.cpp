@@ -160,18 +160,6 @@ TEST_P(Objects, PairsHaveTheProbabilitiesOfTheirJoints) {
     }
 }
 
-TEST_P(Objects, ThreadsAndRepetitionsChangeNothing) {
-    LaidTable table;
-    const std::vector<Joint> joints = table.joints(0.3, -0.2);
-    const Grouping once = grouped(table, joints);
-    for (const unsigned threads : {1u, 2u, 3u, 8u}) {
-        const Grouping again = grouped(table, joints, weighing(1), threads);
-        EXPECT_EQ(again.group, once.group) << threads;
-        EXPECT_EQ(again.agreement, once.agreement) << threads;
-        EXPECT_EQ(again.energy_curve, once.energy_curve) << threads;
-    }
-}
-
 // -ln of the share of a normal distribution: the margin over the noise.
 TEST(StandingCost, FollowsTheMarginOfTheCentre) {
     physics::Candidate c;

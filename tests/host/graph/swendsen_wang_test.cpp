@@ -233,35 +233,6 @@ TEST(SwendsenWang, StartsFromTheGroupsThatAreGiven) {
               (std::vector<std::int32_t>{0, 1, 2, 3, -1, 4}));
 }
 
-// What is sampled does not depend on where the chain began.
-TEST(SwendsenWang, TheStartIsForgotten) {
-    const auto edges = complete_graph(5);
-    SwendsenWangOptions options;
-    options.sample_steps = 50000;
-    options.sample_temperature = 0.5;
-    const std::vector<bool> none(5);
-    const Partition alone = swendsen_wang_cuts(5, edges, none, {arbitrary, {}}, options);
-    options.start = {0, 0, 0, 0, 0};
-    const Partition together = swendsen_wang_cuts(5, edges, none, {arbitrary, {}}, options);
-    EXPECT_NEAR(alone.energy, together.energy, 1e-9);
-    for (std::size_t e = 0; e < edges.size(); ++e)
-        EXPECT_NEAR(alone.joined[e], together.joined[e], 0.03) << e;
-}
-
-TEST(SwendsenWang, SameSeedSameResult) {
-    const auto edges = complete_graph(12);
-    SwendsenWangOptions options;
-    options.seed = 9;
-    options.anneal_steps = options.sample_steps = 300;
-    const Partition a =
-        swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
-    const Partition b =
-        swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
-    EXPECT_EQ(a.label, b.label);
-    EXPECT_EQ(a.joined, b.joined);
-    EXPECT_EQ(a.energy, b.energy);
-}
-
 TEST(SwendsenWang, ALowerBoundSavesEnergiesAndChangesNothing) {
     const auto edges = complete_graph(10);
     const std::vector<bool> pinned{true,  false, false, false, false,

@@ -5,12 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
 #include "physics/directions.h"
 #include "room.h"
-#include "safety/human/body_parts.h"
-#include "safety/human/footprint.h"
 #include "safety/human/human_field.h"
 
 namespace topple::safety {
@@ -146,42 +143,6 @@ TEST(PrimaryMotion, StraightWalksHeadStraight) {
         }
     }
     EXPECT_GT(along, 20 * other);
-}
-
-TEST(PrimaryMotion, OneSeedOneResult) {
-    test::Room room(0.02);
-    room.floor(0, 2, 0, 2);
-    room.box(0.8, 1.2, 0.8, 1.2, 0, 1);
-    const WalkableMap map = walkable_map(room.surroundings(), {});
-    HumanOptions options;
-    const auto a = primary_motion(map, options), b = primary_motion(map, options);
-    EXPECT_EQ(a.visits, b.visits);
-    options.seed = 2;
-    EXPECT_NE(primary_motion(map, options).visits, a.visits);
-}
-
-TEST(Footprint, OneWalkPastACellIsOnePass) {
-    HumanOptions options;
-    const double cell = 0.05;
-    const Footprint footprint = make_footprint(cell, table_motion(options));
-    for (unsigned part = 0; part < body_parts.size(); ++part) {
-        for (const unsigned d : {0u, 4u, 8u, 12u}) {  // paths along the grid
-            std::map<int, double> by_side;
-            for (auto e = footprint.first[part * direction_count + d];
-                 e < footprint.first[part * direction_count + d + 1]; ++e) {
-                const auto& o = footprint.offsets[footprint.row[e]];
-                by_side[d % 8 == 0 ? o.y : o.x] += double{footprint.weight[e]};
-            }
-            for (const auto& [side, sum] : by_side) {
-                const double stray =
-                    std::fabs(side * cell) - body_parts[part].reach * options.body_height_m;
-                const double chance = stray <= 0 ? 1 : 1 - stray / options.wander_m;
-                EXPECT_NEAR(sum, body_parts[part].share * chance, 1e-5)
-                    << body_parts[part].name << ", side " << side;
-            }
-            EXPECT_GE(by_side.size(), 7u);
-        }
-    }
 }
 
 }  // namespace
