@@ -16,8 +16,8 @@ constexpr const char* good_intrinsics =
     R"({"width": 5, "height": 3, "fx": 4.5, "fy": 4.25, "cx": 2, "cy": 1, "depth_scale": 1000})";
 
 // Turned by 90 degrees about z, then moved: the same camera in the three formats.
-const Mat4 turned{0, -1, 0, 4, 1, 0, 0, 5, 0, 0, 1, 6, 0, 0, 0, 1};
-const Mat4 level{1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1};
+const Mat4 turned_pose{0, -1, 0, 4, 1, 0, 0, 5, 0, 0, 1, 6, 0, 0, 0, 1};
+const Mat4 level_pose{1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1};
 constexpr const char* tum = "0 1 2 3 0 0 0 1\n0.1 4 5 6 0 0 2 2\n";
 constexpr const char* kitti = "# KITTI\n1 0 0 1 0 1 0 2 0 0 1 3\n0 -1 0 4 1 0 0 5 0 0 1 6\n";
 constexpr const char* log_backwards =
@@ -50,7 +50,8 @@ class Sequence : public test::Files {
 
 TEST_F(Sequence, frames_in_order_of_name_with_their_poses) {
     make(2,
-         "# t x y z qx qy qz qw\n0.0 1 2 3 0 0 0 1\n\n0.1 4 5 6 0 0 2 2 # turned by 90 degrees\n");
+         "# t x y z qx qy qz qw\n0.0 1 2 3 0 0 0 1\n\n0.1 4 5 6 0 0 2 2 # turned by 90 "
+         "degrees\n");
     write("depth/._0000.png", "left by another system");
     write("depth/readme.txt", "not an image");
     EXPECT_TRUE(looks_like_sequence(folder_));
@@ -65,9 +66,9 @@ TEST_F(Sequence, frames_in_order_of_name_with_their_poses) {
         EXPECT_EQ(first.depth[i], 1000 + i);
         EXPECT_EQ(second.depth[i], 2000 + i);
     }
-    EXPECT_EQ(first.camera_to_world, level);
+    EXPECT_EQ(first.camera_to_world, level_pose);
     for (std::size_t i = 0; i < 16; ++i)
-        EXPECT_NEAR(second.camera_to_world[i], turned[i], 1e-15) << i;
+        EXPECT_NEAR(second.camera_to_world[i], turned_pose[i], 1e-15) << i;
     // -y of the first camera is (0, -1, 0), of the second (1, 0, 0).
     const auto up = sequence.mean_camera_up();
     ASSERT_TRUE(up);
@@ -101,8 +102,8 @@ TEST_F(Sequence, formats_of_poses_are_told_apart_by_content_whatever_the_name) {
             EXPECT_TRUE(sequence.posed());
             ASSERT_EQ(sequence.size(), 2u);
             for (std::size_t i = 0; i < 16; ++i) {
-                EXPECT_NEAR(sequence.camera_to_world(0)[i], level[i], 1e-12) << i;
-                EXPECT_NEAR(sequence.camera_to_world(1)[i], turned[i], 1e-12) << i;
+                EXPECT_NEAR(sequence.camera_to_world(0)[i], level_pose[i], 1e-12) << i;
+                EXPECT_NEAR(sequence.camera_to_world(1)[i], turned_pose[i], 1e-12) << i;
             }
             std::filesystem::remove(file);
         }
