@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,13 +14,13 @@
 // What calls that fail say.
 namespace topple::test {
 
-// What an Error that a call throws says.
+// What an Error of that kind, or of any, that a call throws says.
 template <class Call>
-std::string message_of(const Call& call, ErrorKind kind = ErrorKind::device) {
+std::string message_of(const Call& call, std::optional<ErrorKind> kind = ErrorKind::device) {
     try {
         call();
     } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind) << error.what();
+        EXPECT_EQ(error.kind(), kind.value_or(error.kind())) << error.what();
         return error.what();
     }
     return "nothing was thrown";

@@ -52,7 +52,7 @@ class Mutation : public test::Files {
         test::Random random(valid.size());
         static const char* const tokens[] = {
             "nan", "-1", "1e999", "18446744073709551615", "\n", " ", "0", "\xff", ","};
-        for (int i = 0; i < 1500; ++i) {
+        for (int i = 0; i < 2500; ++i) {
             auto bytes = valid;
             for (auto edits = 1 + random.below(4); edits > 0 && !bytes.empty(); --edits) {
                 const auto at = random.below(bytes.size());
