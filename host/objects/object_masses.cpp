@@ -69,6 +69,11 @@ void weigh(std::span<const std::int32_t> primitives, double mass_kg,
 
 }  // namespace
 
+const char* to_string(MassModel model) {
+    constexpr const char* names[] = {"solid", "closed", "hollow"};
+    return names[static_cast<std::size_t>(model)];
+}
+
 ObjectMasses weigh_objects(const SolidScene& solids,
                            std::span<const std::int32_t> object_of_primitive,
                            std::span<const KnownMass> known, std::int32_t grounded,
@@ -76,9 +81,7 @@ ObjectMasses weigh_objects(const SolidScene& solids,
                            std::vector<physics::MassProperties>& bodies) {
     const std::size_t objects = known.size();
     ObjectMasses out;
-    out.closed.assign(objects, false);
-    out.hollow = out.weighed = out.closed;
-    out.contents_error.resize(objects);
+    out.objects.resize(objects);
     std::vector<double> density(objects, options.density_kg_m3), inertia_density = density;
     const std::vector<double> volume = volumes(object_of_primitive, bodies, objects);
     auto looks = physics::furniture_looks(solids, object_of_primitive, volume);
@@ -93,10 +96,11 @@ ObjectMasses weigh_objects(const SolidScene& solids,
             const physics::ClosedBody body = physics::closed_body(
                 looks[o], volume[o], options.density_kg_m3, *options.contents_kg_m3);
             const double less_kg_m3 = options.density_kg_m3 - body.density_kg_m3;
-            out.closed[o] = share > 0.5;
-            out.contents_error[o] = scaled(body.error, share);
-            out.contents_error[o].mass_kg = std::hypot(
-                out.contents_error[o].mass_kg, two_ways_apart(share) * less_kg_m3 * volume[o]);
+            if (share > 0.5) out.objects[o].model = MassModel::closed;
+            physics::BodyError& error = out.objects[o].contents_error;
+            error = scaled(body.error, share);
+            error.mass_kg =
+                std::hypot(error.mass_kg, two_ways_apart(share) * less_kg_m3 * volume[o]);
             density[o] -= share * less_kg_m3;
             inertia_density[o] += share * (body.inertia_density_kg_m3 - inertia_density[o]);
         }
@@ -107,17 +111,19 @@ ObjectMasses weigh_objects(const SolidScene& solids,
     }
     const std::vector<physics::Symmetric> moments = physics::second_moments(
         solids.cells(), static_cast<std::int32_t>(bodies.size()), solids.boundary());
-    out.inertia =
+    const std::vector<physics::Symmetric> inertia =
         physics::inertia_of_objects(moments, bodies, object_of_primitive, inertia_density);
     for (std::size_t o = 0; o < objects; ++o) {
-        out.hollow[o] = known[o].wall_m.has_value();
-        out.weighed[o] = known[o].mass_kg.has_value();
-        if (!out.hollow[o] && !out.weighed[o]) continue;
+        ObjectMasses::Object& object = out.objects[o];
+        object.inertia = inertia[o];
+        object.weighed = known[o].mass_kg.has_value();
+        if (known[o].wall_m) object.model = MassModel::hollow;
+        if (!known[o].wall_m && !object.weighed) continue;
         const std::vector<std::int32_t> primitives = members(object_of_primitive, o);
-        if (out.hollow[o])
+        if (known[o].wall_m)
             hollow_out(solids, primitives, *known[o].wall_m, options.density_kg_m3, bodies,
-                       out.inertia[o]);
-        if (out.weighed[o]) weigh(primitives, *known[o].mass_kg, bodies, out.inertia[o]);
+                       object.inertia);
+        if (object.weighed) weigh(primitives, *known[o].mass_kg, bodies, object.inertia);
         for (const std::int32_t p : primitives) {
             const physics::MassProperties& body = bodies[static_cast<std::size_t>(p)];
             out.density_kg_m3[static_cast<std::size_t>(p)] =
@@ -128,7 +134,7 @@ ObjectMasses weigh_objects(const SolidScene& solids,
     for (std::size_t p = 0; p < bodies.size(); ++p)
         mass[static_cast<std::size_t>(object_of_primitive[p])] += bodies[p].mass_kg;
     for (std::size_t o = 0; o < objects; ++o)
-        out.alike_error_kg.push_back(physics::error_among_alike_kg(mass, alike[o], o));
+        out.objects[o].alike_error_kg = physics::error_among_alike_kg(mass, alike[o], o);
     return out;
 }
 

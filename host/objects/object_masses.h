@@ -20,13 +20,24 @@ struct KnownMass {
     std::optional<double> mass_kg;  // of all of it
 };
 
-// What objects weigh: as solids of the density that was given, as closed furniture, or as is known.
+enum class MassModel : std::uint8_t {
+    solid,   // of the density that was given
+    closed,  // furniture of boards around contents
+    hollow,  // a shell, as somebody knows
+};
+const char* to_string(MassModel model);
+
+// What objects weigh.
 struct ObjectMasses {
-    std::vector<double> density_kg_m3;               // by primitive: mass over volume
-    std::vector<bool> closed, hollow, weighed;       // by object
-    std::vector<physics::BodyError> contents_error;  // by object, 0 for solids
-    std::vector<physics::Symmetric> inertia;         // by object, about its centre of mass
-    std::vector<double> alike_error_kg;              // by object: see physics/repeated_objects.h
+    struct Object {
+        MassModel model = MassModel::solid;
+        bool weighed = false;               // its mass is known
+        physics::BodyError contents_error;  // 0 for solids
+        physics::Symmetric inertia{};       // about its centre of mass
+        double alike_error_kg = 0;          // see physics/repeated_objects.h
+    };
+    std::vector<double> density_kg_m3;  // by primitive: mass over volume
+    std::vector<Object> objects;
 };
 
 // Gives `bodies`, of primitives at the density of the options, the masses that they have in their

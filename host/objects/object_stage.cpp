@@ -12,7 +12,6 @@
 #include "geometry/primitive_shapes.h"
 #include "graph/false_feet.h"
 #include "objects/find_hidden_walls.h"
-#include "objects/object_masses.h"
 #include "physics/body_landscape.h"
 #include "physics/directions.h"
 #include "physics/drop.h"
@@ -149,13 +148,13 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, b
             graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
         object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
                                                 errors, masses.density_kg_m3);
-        object.closed = masses.closed[o];
-        object.hollow = masses.hollow[o];
-        object.inertia = masses.inertia[o];
-        add_independent(masses.contents_error[o], object.body_error);
+        const ObjectMasses::Object& mass = masses.objects[o];
+        object.mass_model = mass.model;
+        object.inertia = mass.inertia;
+        add_independent(mass.contents_error, object.body_error);
         // What is off of alike things holds what is off of each by itself.
-        object.body_error.mass_kg = std::max(object.body_error.mass_kg, masses.alike_error_kg[o]);
-        if (masses.weighed[o]) object.body_error.mass_kg = 0;
+        object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
+        if (mass.weighed) object.body_error.mass_kg = 0;
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
@@ -273,7 +272,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
             tipping[o] = std::move(*beside);
         physics::Instability& how = objects[o].instability;
         how = physics::combine_curves(tipping[o], sliding[o]);
-        if (how.mode == "tip" && how.drop_m > 0)
+        if (how.mode == physics::Instability::Mode::tip && how.drop_m > 0)
             how.onto = physics::met_when_tipped(cells, columns, candidates[o], how.weakest,
                                                 (*how.edge)[0]);
         objects[o].barrier_error_J =
@@ -281,15 +280,14 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                                      objects[o].margin_error_m, friction);
         objects[o].seen_error_J = objects[o].barrier_error_J;
         // Its upper end is that of a foot that goes on unseen.
-        if (how.mode != "slide")
+        if (how.mode != physics::Instability::Mode::slide)
             objects[o].barrier_error_J =
                 std::max(objects[o].barrier_error_J,
                          physics::tipping_barrier_J(candidates[o], objects[o].unseen_margin_m) -
                              how.barrier_J);
-        objects[o].overturning =
-            physics::overturning(candidates[o], objects[o].body_error, tipping[o],
-                                 objects[o].box.top_m(), objects[o].margin_error_m, friction,
-                                 floor_below(floors, candidates[o].support_height_m));
+        objects[o].overturning = physics::overturning(
+            candidates[o], objects[o].body_error, tipping[o], objects[o].box.top_m(),
+            objects[o].margin_error_m, friction, floor_below(floors, candidates[o].support_height_m));
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);

@@ -15,6 +15,7 @@
 #include "graph/supports.h"
 #include "objects/hand_corrections.h"
 #include "objects/object_boxes.h"
+#include "objects/object_masses.h"
 #include "physics/bodies.h"
 #include "physics/hidden_walls.h"
 #include "physics/inertia.h"
@@ -35,8 +36,7 @@ struct Body {
     physics::Stability level_tipping;  // and its support went on beyond all of its edges
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
-    bool closed = false;               // furniture of boards around contents
-    bool hollow = false;               // a shell, as somebody knows
+    MassModel mass_model = MassModel::solid;
     physics::Symmetric inertia{};
     physics::BodyError body_error;
     double barrier_error_J = 0;

@@ -6,6 +6,11 @@
 
 namespace topple::physics {
 
+const char* to_string(Instability::Mode mode) {
+    constexpr const char* names[] = {"none", "tip", "slide"};
+    return names[static_cast<std::size_t>(mode)];
+}
+
 Instability combine_curves(const Stability& tip, const SlideResult& slide) {
     std::vector<InstabilityStep> steps = tip.curve;
     const bool slides = slide.found && slide.released_J > 0;
@@ -22,27 +27,28 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
             result.curve.push_back(step);
         }
     }
-    const auto take = [&](const char* mode, double barrier_J, double release_J, const auto& way) {
+    using Mode = Instability::Mode;
+    const auto take = [&](Mode mode, double barrier_J, double release_J, const auto& way) {
         result.mode = mode;
         result.barrier_J = barrier_J;
         result.release_J = release_J;
         result.weakest = way.direction;
         result.edge = way.edge;
         result.drop_m = way.drop_m;
-        if (result.mode != "none") result.direction = way.direction;
+        if (mode != Mode::none) result.direction = way.direction;
     };
     // Tipping may find its first release behind a higher pass than its lowest.
     const InstabilityStep* first = tip.curve.empty() ? nullptr : &tip.curve.front();
     const bool tips = tip.release_J > 0 || (tip.barrier_J > 0 && (slides || first));
     if (tips && !(slides && slide.absorbed_J < tip.barrier_J)) {
-        take("tip", tip.barrier_J, tip.release_J, tip.easiest);
+        take(Mode::tip, tip.barrier_J, tip.release_J, tip.easiest);
     } else if (slides && !(first && first->W_J < slide.absorbed_J)) {
-        take("slide", slide.absorbed_J, slide.released_J, slide);
+        take(Mode::slide, slide.absorbed_J, slide.released_J, slide);
         result.onto = slide.onto;
     } else if (first) {
-        take("tip", first->W_J, first->S_J, *tip.releasing);
+        take(Mode::tip, first->W_J, first->S_J, *tip.releasing);
     } else {
-        take("none", tip.barrier_J, 0, tip.easiest);
+        take(Mode::none, tip.barrier_J, 0, tip.easiest);
     }
     return result;
 }
@@ -57,7 +63,8 @@ double barrier_error_J(const Candidate& body, const BodyError& known, const Stab
     const double weight = body.body.mass_kg * gravity;
     if (!(weight > 0)) return 0;
     const double of_mass = how.barrier_J * known.mass_kg / body.body.mass_kg;
-    if (how.mode == "slide") return std::hypot(friction * weight * margin_error_m, of_mass);
+    if (how.mode == Instability::Mode::slide)
+        return std::hypot(friction * weight * margin_error_m, of_mass);
     if (!how.edge || !(tip.margin_m > 0)) return std::hypot(weight * margin_error_m, of_mass);
     const auto& [a, b] = *how.edge;
     const double beside =

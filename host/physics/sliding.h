@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/unseen.h"
@@ -99,17 +98,19 @@ SlideElsewhere slide_elsewhere(const Landscape::Places& places, std::int32_t a, 
 
 // Tipping and sliding taken together.
 struct Instability {
+    enum class Mode : std::uint8_t { none, tip, slide };
     double barrier_J = 0, release_J = 0;  // of the mode
-    std::string mode = "none";            // "tip" | "slide" | "none"
-    Vec3 direction{};                     // zero for "none"
-    std::vector<InstabilityStep> curve;   // S(W) of Eq. 6: ascending in W and in S
-    // How it takes that barrier; for "none" the easiest way, which releases nothing.
+    Mode mode = Mode::none;
+    Vec3 direction{};                    // zero for none
+    std::vector<InstabilityStep> curve;  // S(W) of Eq. 6: ascending in W and in S
+    // How it takes that barrier; for none the easiest way, which releases nothing.
     Vec3 weakest{};            // horizontal, unit; zero where no way is easier than others
     std::optional<Ends> edge;  // that it turns over, or slides off; grid frame
     double drop_m = 0;         // from where its support ends
-    // The primitive that it meets there, -1 for other solid. For "tip" the caller's to find out.
+    // The primitive that it meets there, -1 for other solid. For tipping the caller's to find out.
     std::int32_t onto = -1;
 };
+const char* to_string(Instability::Mode mode);
 
 // The curve is the larger of both at every W. The mode is the one with the least barrier, tipping
 // where equal, if either has something to release, and tipping from a barrier of 0 only if it does;

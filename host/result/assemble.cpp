@@ -101,7 +101,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                 objects.object_of_primitive[static_cast<std::size_t>(from.piece.primitive)];
         to.joint_probability = from.weakest.probability;
         to.weakest_joint = {from.weakest.a, from.weakest.b};
-        to.mass_model = from.hollow ? "hollow" : from.closed ? "closed" : "solid";
+        to.mass_model = to_string(from.mass_model);
         to.center_of_mass_m = to_input(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
         to.mass_error_kg = from.body_error.mass_kg;
@@ -125,7 +125,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                                                 to.overturning.push_error_N /
                                                 to.overturning.push_N / 2;
             }
-            to.mode = from.instability.mode;
+            to.mode = physics::to_string(from.instability.mode);
             to.direction = to_input(from.instability.direction);
             to.instability = from.instability.curve;
             if (from.seen_enough() && from.toppling)

@@ -27,7 +27,13 @@ struct Way {
 
 Way easiest_way(const Body& from) {
     const physics::Instability& how = from.instability;
-    Way out{how.mode == "slide", true, how.weakest, {}, how.barrier_J, how.release_J, how.drop_m};
+    Way out{how.mode == physics::Instability::Mode::slide,
+            true,
+            how.weakest,
+            {},
+            how.barrier_J,
+            how.release_J,
+            how.drop_m};
     if (how.edge) out.edge.emplace((*how.edge)[0], (*how.edge)[1]);
     return out;
 }

@@ -65,7 +65,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
         r.barrier_error_J = o.seen_error_J;
         r.mass_error_share = r.mass_kg > 0 ? o.body_error.mass_kg / r.mass_kg : 0;
         r.center_height_m = o.candidate.body.center[2] - o.candidate.support_height_m;
-        r.slides = o.instability.mode == "slide" && o.sliding.found;
+        r.slides = o.instability.mode == physics::Instability::Mode::slide && o.sliding.found;
         r.base_m = o.candidate.support_height_m;
         r.center = o.candidate.body.center;
         r.height_m = o.box.top_m() - r.base_m;

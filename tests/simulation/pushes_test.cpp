@@ -62,8 +62,8 @@ TEST(Pushes, LeastEnergiesAndTheirDirectionsAreThoseOfTheSimulator) {
         blows_s += seconds([&] { blows.push_back(weakest_blow_J(objects[n])); });
         const double there = weakest_blow_J(objects[n], own[n].direction);
         towards += there <= 1.25 * blows.back();
-        std::printf("%-14s %-5s %9.4f %9.4f %9.4f\n", objects[n].name.c_str(), own[n].mode.c_str(),
-                    energies.back(), blows.back(), there);
+        std::printf("%-14s %-5s %9.4f %9.4f %9.4f\n", objects[n].name.c_str(),
+                    to_string(own[n].mode), energies.back(), blows.back(), there);
     }
     const double correlation = rank_correlation(energies, blows);
     std::printf(

@@ -257,7 +257,7 @@ TEST_F(Sliding, CurvesCombine) {
     way.released_J = 5.5;
     way.direction = {0, 1, 0};
     Instability both = combine_curves(tip, way);
-    EXPECT_EQ(both.mode, "slide");
+    EXPECT_EQ(both.mode, Instability::Mode::slide);
     EXPECT_EQ(both.barrier_J, 1);
     EXPECT_EQ(both.release_J, 5.5);
     ASSERT_EQ(both.curve.size(), 2u);
@@ -265,19 +265,19 @@ TEST_F(Sliding, CurvesCombine) {
     EXPECT_EQ(both.curve[1].W_J, 4);
     way.absorbed_J = 3;
     both = combine_curves(tip, way);
-    EXPECT_EQ(both.mode, "tip");
+    EXPECT_EQ(both.mode, Instability::Mode::tip);
     EXPECT_EQ(both.curve.size(), 3u);
     // Tipping alone may lead nowhere lower: it is how the body leaves its pose first, all the same.
     tip.release_J = 0;
     tip.curve.clear();
     both = combine_curves(tip, way);
-    EXPECT_EQ(both.mode, "tip");
+    EXPECT_EQ(both.mode, Instability::Mode::tip);
     EXPECT_EQ(both.barrier_J, 2);
     EXPECT_EQ(both.release_J, 0);
     ASSERT_EQ(both.curve.size(), 1u);
     EXPECT_EQ(both.curve[0].W_J, 3);
     const Instability none = combine_curves(Stability{}, SlideResult{});
-    EXPECT_EQ(none.mode, "none");
+    EXPECT_EQ(none.mode, Instability::Mode::none);
     EXPECT_TRUE(none.curve.empty());
 }
 

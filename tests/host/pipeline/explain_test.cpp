@@ -15,7 +15,7 @@ std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped =
     Body from;
     from.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     from.tipping.margin_m = -0.25;
-    from.instability.mode = "tip";
+    from.instability.mode = physics::Instability::Mode::tip;
     from.instability.weakest = {-1, 0, 0};
     from.instability.edge = physics::Ends{Vec3{0, 0, 0}, Vec3{0, 1, 0}};
     ObjectStage objects;
@@ -90,7 +90,7 @@ TEST(Explain, what_slides_on_the_floor_falls_off_no_floor) {
         Body chair;
         chair.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
         chair.tipping.margin_m = 0.25;
-        chair.instability.mode = "slide";
+        chair.instability.mode = physics::Instability::Mode::slide;
         chair.instability.weakest = {1, 0, 0};
         chair.instability.drop_m = drop_m;
         chair.instability.onto = 0;
