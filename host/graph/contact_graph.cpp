@@ -12,6 +12,7 @@
 #include "core/scan_gaps.h"
 #include "core/thread_pool.h"
 #include "graph/outline.h"
+#include "graph/undersides.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
 
@@ -171,23 +172,18 @@ struct Extent {
     }
 };
 
-// A primitive's columns: the lowest cell of each, and how far down from there nobody has seen.
-struct Bottom {
-    std::int32_t i, j, lowest, unseen;
-};
-
 // The convex hull of a primitive's columns, seen from above: it may go on where it is hidden, but
 // not beyond that.
-std::vector<std::array<double, 2>> hull_of(const std::vector<Bottom>& columns, double h) {
+std::vector<std::array<double, 2>> hull_of(const std::vector<Underside>& columns, double h) {
     std::vector<BorderPoint> corners;
-    for (const Bottom& u : columns) add_corners(u.i, u.j, h, corners);
+    for (const Underside& u : columns) add_corners(u.i, u.j, h, corners);
     return graph::outline_of(corners).polygon;
 }
 
 // The columns that may rest on a surface at this height, within its outline if that is known:
 // unseen from their underside down to it, or, where they end at it, for some way on: else it is air
 // that they end in. What bounds them may tell that they reach the surface.
-std::uint64_t add_hidden_corners(const std::vector<Bottom>& undersides, double height_m,
+std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, double height_m,
                                  const std::vector<std::array<double, 2>>& outline, double h,
                                  std::int32_t primitive, const Shapes& shapes,
                                  std::vector<BorderPoint>& corners) {
@@ -197,13 +193,13 @@ std::uint64_t add_hidden_corners(const std::vector<Bottom>& undersides, double h
     };
     const double surface = height_m / h;
     std::uint64_t columns = 0;
-    for (const Bottom& u : undersides) {
-        const double above = u.lowest - surface;
-        const bool rests = above >= -1.5 &&
-                           (u.unseen >= std::max(above - 0.5, 2.0) ||
-                            (above <= 1.5 && shapes.goes_on_below(u.i, u.j, u.lowest, primitive)));
+    for (const Underside& u : undersides) {
+        const double above = u.k - surface;
+        const bool rests =
+            above >= -1.5 && (u.unseen >= std::max(above - 0.5, 2.0) ||
+                              (above <= 1.5 && shapes.goes_on_below(u.i, u.j, u.k, primitive)));
         if (!rests || !within(u)) continue;
-        shapes.add(u.i, u.j, u.lowest, primitive, corners);
+        shapes.add(u.i, u.j, u.k, primitive, corners);
         ++columns;
     }
     for (const solids::BorderColumn& c : shapes.beside(primitive))
@@ -222,7 +218,7 @@ struct Carrier {
 
 // The outlines and heights of contacts: most of the time that contacts take.
 void find_outlines(std::span<const Carrier> carriers,
-                   const std::vector<std::vector<Bottom>>& undersides, double h,
+                   const std::vector<std::vector<Underside>>& undersides, double h,
                    const Shapes& shapes, ThreadPool& threads, ContactGraph& graph) {
     std::vector<bool> asked(undersides.size(), false);
     std::vector<std::size_t> wide;
@@ -263,13 +259,13 @@ constexpr double least_on_fragments = 0.15;
 
 // What is not seen to hang, and is not seen to stand either, stands on the highest level surface
 // under it: others hide its foot, and it hides its shadow on the table.
-void add_hidden_carryings(const std::vector<std::vector<Bottom>>& undersides,
+void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
                           const std::vector<Extent>& extents, double h, const Shapes& shapes,
                           ContactGraph& graph) {
     constexpr double least_hidden = 0.5;  // share of the columns below which nobody has seen
     std::vector<Carrying> found;
     for (std::int32_t p = 0; p < graph.primitives; ++p) {
-        const std::vector<Bottom>& own = undersides[static_cast<std::size_t>(p)];
+        const std::vector<Underside>& own = undersides[static_cast<std::size_t>(p)];
         if (own.empty() || !graph.carriers_of(p).empty()) continue;
         const Extent& e = extents[static_cast<std::size_t>(p)];
         Carrying best;
@@ -386,7 +382,9 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         carried;  // (supported, supporter)
     std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;
-    std::vector<std::vector<Bottom>> undersides(count);
+    std::vector<std::int32_t> alone(count);  // each primitive as an object of its own
+    std::iota(alone.begin(), alone.end(), 0);
+    const std::vector<std::vector<Underside>> undersides = graph::undersides(cells, alone, count);
     std::vector<Extent> extents(count);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t upper = cells.primitive[n];
@@ -395,11 +393,6 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         graph.lowest_m[p] = std::min(graph.lowest_m[p], cells.k[n] * h);
         graph.highest_m[p] = std::max(graph.highest_m[p], (cells.k[n] + 1) * h);
         graph.section_m2[p] += h * h * h;
-        std::vector<Bottom>& own = undersides[p];
-        if (own.empty() || own.back().i != cells.i[n] || own.back().j != cells.j[n]) {
-            own.push_back({cells.i[n], cells.j[n], cells.k[n],
-                           cells.unseen_below.empty() ? 0 : cells.unseen_below[n]});
-        }
         const bool last = n + 1 == cells.size() || cells.i[n + 1] != cells.i[n] ||
                           cells.j[n + 1] != cells.j[n] || cells.primitive[n + 1] != upper;
         if (last)

@@ -10,7 +10,6 @@
 #include "core/scan_gaps.h"
 #include "core/touching_cells.h"
 #include "core/union_find.h"
-#include "graph/rest.h"
 
 namespace topple::graph {
 namespace {

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/scan_gaps.h"
 #include "fitted/boosted_trees.h"
 
 namespace topple::graph {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "graph/contact_graph.h"
-#include "graph/rest.h"
+#include "graph/undersides.h"
 #include "topple/scene.h"
 
 // Which object carries which (paper, 4.2), with the probability that it is so. Grid frame.

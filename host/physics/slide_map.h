@@ -12,10 +12,10 @@
 // The ground that one object slides on. For this folder.
 namespace topple::physics {
 
-// An object's columns, lowest and highest cell of each.
+// An object's columns, and the lowest cell of each.
 struct Footprint {
     struct Column {
-        std::int32_t i, j, low, high;
+        std::int32_t i, j, low;
     };
     std::vector<Column> columns;  // sorted by (i, j)
     std::int32_t top = 0;         // highest cell of the object

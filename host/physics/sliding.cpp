@@ -27,11 +27,8 @@ std::vector<Footprint> footprints(const SolidCells& cells, std::span<const std::
         Footprint& foot = feet[static_cast<std::size_t>(object[n])];
         foot.top = foot.columns.empty() ? cells.k[n] : std::max(foot.top, cells.k[n]);
         if (foot.columns.empty() || foot.columns.back().i != cells.i[n] ||
-            foot.columns.back().j != cells.j[n]) {
-            foot.columns.push_back({cells.i[n], cells.j[n], cells.k[n], cells.k[n]});
-        } else {
-            foot.columns.back().high = cells.k[n];
-        }
+            foot.columns.back().j != cells.j[n])
+            foot.columns.push_back({cells.i[n], cells.j[n], cells.k[n]});
     }
     return feet;
 }

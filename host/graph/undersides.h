@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/solid_cells.h"
+
+namespace topple::graph {
+
+// A column of an object's cells: where it ends below, and what is under it. Voxels.
+struct Underside {
+    std::int32_t i, j, k;    // the lowest cell
+    std::int32_t gap;        // empty cells down to the next solid of another object; -1: none
+    std::int32_t primitive;  // of that solid; -1: of none
+    std::int32_t own;        // primitive of the lowest cell
+    std::int32_t unseen;     // cells right below it that nobody saw into
+};
+// By object, sorted by (i, j, k).
+std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
+                                               std::span<const std::int32_t> object_of_primitive,
+                                               std::size_t objects);
+
+}  // namespace topple::graph
