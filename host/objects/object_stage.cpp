@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "core/thread_pool.h"
@@ -96,29 +95,6 @@ void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks
     }
 }
 
-// The heights of the floors, ascending: levels with a hundredth of what is floor.
-std::vector<double> floor_levels(const SolidScene& solids) {
-    const SolidCells& cells = solids.cells();
-    std::map<std::int32_t, std::size_t> count;
-    std::size_t all = 0;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (cells.primitive[c] < 0 || solids.role(cells.primitive[c]) != Role::floor) continue;
-        ++count[cells.k[c]];
-        ++all;
-    }
-    std::vector<double> out;
-    for (const auto& [k, n] : count)
-        if (100 * n >= all) out.push_back((k + 1) * cells.voxel_m);
-    return out;
-}
-
-// The highest of them that is not above the height; where there is none, the height itself.
-double floor_below(const std::vector<double>& floors, double height_m) {
-    constexpr double slack_m = 0.05;
-    const auto above = std::ranges::upper_bound(floors, height_m + slack_m);
-    return above == floors.begin() ? height_m : std::min(*std::prev(above), height_m);
-}
-
 // Objects by group, the ground first.
 void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, bool sensed,
                      const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
@@ -140,7 +116,7 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, b
     }
     const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
     const auto errors = physics::volume_errors(cells, boundary);
-    const std::vector<double> floors = floor_levels(solids);
+    out.floors = FloorHeights(solids);
     out.objects.resize(members.size());
     threads.each(members.size(), 1, [&](std::size_t o) {
         Body& object = out.objects[o];
@@ -160,7 +136,8 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, b
         if (!object.grounded) {
             graph::Rest rest = graph::infer_rest(
                 object.candidate, columns[o], out.contacts, boundary,
-                std::max(object.body_error.center_m[0], object.body_error.center_m[1]), floors);
+                std::max(object.body_error.center_m[0], object.body_error.center_m[1]),
+                out.floors.levels_m());
             object.rest = rest.kind;
             object.rest_probability = rest.probability;
             object.margin_error_m = rest.margin_error_m;
@@ -168,6 +145,7 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, b
             object.candidate.stood = rest.kind != graph::RestKind::none;
             object.candidate.support_polygon = std::move(rest.support_polygon);
             object.candidate.support_height_m = rest.support_height_m;
+            object.floor_m = out.floors.below_m(rest.support_height_m);
         }
         object.lowest_m = std::numeric_limits<double>::infinity();
         object.highest_m = -object.lowest_m;
@@ -262,7 +240,6 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                             .ways = safety::directions(),
                             .threads = &device.threads(),
                             .unseen = unseen});
-    const std::vector<double> floors = floor_levels(solids);
     const std::vector<bool> fixed = fixed_primitives(object_of_primitive, objects);
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
@@ -287,7 +264,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                              how.barrier_J);
         objects[o].overturning = physics::overturning(
             candidates[o], objects[o].body_error, tipping[o], objects[o].box.top_m(),
-            objects[o].margin_error_m, friction, floor_below(floors, candidates[o].support_height_m));
+            objects[o].margin_error_m, friction, objects[o].floor_m);
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);

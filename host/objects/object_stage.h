@@ -13,6 +13,7 @@
 #include "graph/rest.h"
 #include "graph/stable_objects.h"
 #include "graph/supports.h"
+#include "objects/floor_heights.h"
 #include "objects/hand_corrections.h"
 #include "objects/object_boxes.h"
 #include "objects/object_masses.h"
@@ -43,6 +44,7 @@ struct Body {
     double seen_error_J = 0;  // the same of what was seen of its foot: risk knows of no more
     Overturning overturning;
     std::shared_ptr<const physics::Toppling> toppling;  // none: nothing holds it, or it is grounded
+    double floor_m = 0;                                 // height of the floor under it
     // How it stands (graph/rest.h); its candidate is held up in that way.
     graph::RestKind rest = graph::RestKind::seen;
     double rest_probability = 1;
@@ -71,6 +73,7 @@ struct ObjectStage {
     graph::Grouping grouping;
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
     std::vector<Body> objects;
+    FloorHeights floors;
     physics::HiddenWalls hidden_walls;
     std::vector<Support> supports;  // sorted by (supporter, supported)
     HandCorrections::Told told;

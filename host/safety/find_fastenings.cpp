@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace topple {
 namespace {
@@ -55,18 +54,6 @@ bool hidden_wall_near(const physics::HiddenWalls& walls, const ObjectBox& box) {
     return false;
 }
 
-// The middle one of the tops of the floors' cells; -infinity without any.
-double floor_height_m(const SolidScene& solids) {
-    std::vector<std::int32_t> heights;
-    const SolidCells& cells = solids.cells();
-    for (std::size_t n = 0; n < cells.size(); ++n)
-        if (solids.role(cells.primitive[n]) == Role::floor) heights.push_back(cells.k[n]);
-    if (heights.empty()) return -std::numeric_limits<double>::infinity();
-    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-    std::ranges::nth_element(heights, middle);
-    return (*middle + 1) * cells.voxel_m;
-}
-
 // Whether what carries most of it is the floor, or of the building and hardly higher, as scraps of
 // a floor are; also where nothing is known to carry it.
 bool on_floor(const SolidScene& solids, const ObjectStage& objects, double floor_m,
@@ -92,7 +79,7 @@ bool on_floor(const SolidScene& solids, const ObjectStage& objects, double floor
 
 std::vector<Fastening> find_fastenings(const SolidParts& parts, const ObjectStage& objects) {
     const std::vector<bool> fixed = fixed_primitives(objects.object_of_primitive, objects.objects);
-    const double floor_m = floor_height_m(*parts.solids);
+    const double floor_m = objects.floors.middle_m();
     std::vector<Fastening> out(objects.objects.size());
     for (std::size_t o = 0; o < out.size(); ++o) {
         const ObjectBox& box = objects.objects[o].box;
