@@ -6,6 +6,7 @@
 
 #include "physics/infinity.h"
 #include "physics/landscape.h"
+#include "physics/tipping.h"
 
 namespace topple::physics {
 namespace {
@@ -28,10 +29,6 @@ struct Turning {
     int slip_sign = 0;
 };
 
-double rise_m(double beside_m, double height_m) {
-    return std::hypot(beside_m, height_m) - height_m;
-}
-
 // Over an edge `beside` the centre of mass, h above it; k is the radius of gyration.
 class Pivot {
   public:
@@ -40,7 +37,7 @@ class Pivot {
         radius_ = std::hypot(b_, h_);
         top_ = std::atan2(b_, h_);
         pinned2_ = k2_ + square(radius_);
-        rise_J_kg_ = gravity * rise_m(b_, h_);
+        rise_J_kg_ = gravity * rise_over_edge_m(h_, b_);
     }
     // Square of the radius of gyration about the edge, where that holds.
     double pinned2() const { return pinned2_; }
@@ -260,7 +257,8 @@ double tips_behind_m_s(const Upright& body, double z_m, double friction) {
         const double both = square(body.gyration_m) + square(body.height_m);
         const double b = body.ahead_m, c = body.behind_m, kept = both - b * c;
         const double left = kept * kept / ((both + b * b) * (both + c * c));
-        const double needed = rise_m(c, body.height_m) / (left * rise_m(b, body.height_m));
+        const double needed =
+            rise_over_edge_m(body.height_m, c) / (left * rise_over_edge_m(body.height_m, b));
         if (!(kept > 0) || !(needed < 1)) return infinity;
         return tips_ahead_m_s(body, z_m, friction) * std::sqrt(needed);
     }

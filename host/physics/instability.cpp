@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "physics/sliding.h"
+#include "physics/tipping.h"
 
 namespace topple::physics {
 
@@ -55,7 +56,7 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
 
 double tipping_barrier_J(const Candidate& body, double margin_m) {
     const double height = std::max(body.body.center[2] - body.support_height_m, 0.0);
-    return body.body.mass_kg * gravity * (std::hypot(height, margin_m) - height);
+    return body.body.mass_kg * gravity * rise_over_edge_m(height, margin_m);
 }
 
 double barrier_error_J(const Candidate& body, const BodyError& known, const Stability& tip,
@@ -74,7 +75,7 @@ double barrier_error_J(const Candidate& body, const BodyError& known, const Stab
     const double radius = std::hypot(height, beside);
     const double tipping = weight * std::max(std::hypot(beside / radius * margin_error_m,
                                                         (1 - height / radius) * known.center_m[2]),
-                                             std::hypot(height, margin_error_m) - height);
+                                             rise_over_edge_m(height, margin_error_m));
     return std::hypot(tipping, of_mass);
 }
 

@@ -8,6 +8,7 @@
 #include "core/vectors.h"
 #include "physics/assess.h"
 #include "physics/fall_sweep.h"
+#include "physics/tipping.h"
 
 namespace topple::physics {
 namespace {
@@ -42,7 +43,7 @@ std::optional<Stability> beside_fixed(const SolidCells& cells, const CellColumns
         const Swept swept = sweep_over_edge(cells, columns, walls, body, {}, body.support_height_m,
                                             way, beside, top_m, fixed);
         if (!swept.stopped) return std::nullopt;
-        Stop stop{std::hypot(height, beside) - height, 0};
+        Stop stop{rise_over_edge_m(height, beside), 0};
         const double ahead =
             dot({swept.center[0] - center[0], swept.center[1] - center[1], 0}, way);
         if (ahead > beside)

@@ -56,6 +56,10 @@ Footing footing(std::span<const Point> polygon, double x, double y) {
     return result;
 }
 
+double rise_over_edge_m(double height_m, double distance_m) {
+    return std::hypot(height_m, distance_m) - height_m;
+}
+
 double edge_distance_m(double rise_m, double height_m) {
     return std::sqrt(rise_m * std::max(rise_m + 2 * height_m, 0.0));
 }
@@ -77,6 +81,20 @@ std::vector<Point> convex_polygon(std::vector<Point> points) {
         std::reverse(points.begin(), points.end());
     }
     return hull;
+}
+
+double least_width_m(std::span<const Point> polygon) {
+    if (polygon.size() < 3) return 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t e = 0; e < polygon.size(); ++e) {
+        const Point &a = polygon[e], &b = polygon[(e + 1) % polygon.size()];
+        const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+        if (length <= 0) continue;
+        double reach = 0;
+        for (const Point& p : polygon) reach = std::max(reach, std::abs(turn(a, b, p)) / length);
+        least = std::min(least, reach);
+    }
+    return least;
 }
 
 }  // namespace topple::physics

@@ -26,11 +26,18 @@ struct Footing {
 // give a footing without an inside.
 Footing footing(std::span<const std::array<double, 2>> polygon, double x, double y);
 
+// How far a centre of mass that is so high rises until it stands over an edge that is so far away,
+// level.
+double rise_over_edge_m(double height_m, double distance_m);
+
 // How far under it, level, an edge is from a centre of mass `height_m` above it that rises by so
-// much until it stands over the edge: the inverse of sqrt(height^2 + distance^2) - height.
+// much until it stands over the edge: the inverse of that.
 double edge_distance_m(double rise_m, double height_m);
 
 // Convex hull of points, counter-clockwise, strict corners only, from the lowest (x, y) on.
 std::vector<std::array<double, 2>> convex_polygon(std::vector<std::array<double, 2>> points);
+
+// Least width of a convex polygon: over its edges, the reach of the corner furthest from the edge.
+double least_width_m(std::span<const std::array<double, 2>> polygon);
 
 }  // namespace topple::physics

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "objects/legs.h"
 #include "physics/overturning.h"
+#include "physics/tipping.h"
 #include "safety/disturbances.h"
 #include "safety/find_fastenings.h"
 #include "safety/risk_error.h"
@@ -15,26 +15,6 @@
 
 namespace topple {
 namespace {
-
-// Least width of a convex polygon: over its edges, the reach of the corner furthest from the edge.
-double least_width(const std::vector<std::array<double, 2>>& polygon) {
-    if (polygon.size() < 3) return 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t e = 0; e < polygon.size(); ++e) {
-        const auto& a = polygon[e];
-        const auto& b = polygon[(e + 1) % polygon.size()];
-        const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
-        if (length <= 0) continue;
-        double reach = 0;
-        for (const auto& p : polygon) {
-            reach = std::max(
-                reach,
-                std::abs((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / length);
-        }
-        least = std::min(least, reach);
-    }
-    return least;
-}
 
 safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& objects) {
     safety::Surroundings s;
@@ -69,7 +49,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
         r.base_m = o.candidate.support_height_m;
         r.center = o.candidate.body.center;
         r.height_m = o.box.top_m() - r.base_m;
-        r.base_width_m = least_width(o.candidate.support_polygon);
+        r.base_width_m = physics::least_width_m(o.candidate.support_polygon);
         r.base_error_share = physics::slope_error_share(o.overturning);
         if (o.sliding.found) {
             r.slide_distance_m = o.sliding.distance_m;
