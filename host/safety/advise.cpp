@@ -96,7 +96,6 @@ class Mover {
         changed.barrier_J = how.barrier_J;
         changed.curve = how.curve;
         changed.slide_distance_m = slide.found ? slide.distance_m : -1;
-        changed.drop_m = slide.drop_m;
         changed.toppling = std::make_shared<physics::Toppling>(
             (falls ? elsewhere.open : elsewhere.level).elsewhere(slide));
         for (const safety::Disturbance& d : disturbances_) {

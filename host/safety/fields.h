@@ -23,9 +23,8 @@
 // Disturbance fields (paper, 5.1) and the risk they bring (Eq. 7). Grid frame: metres, z up.
 namespace topple::safety {
 
-// An object as this stage sees it.
+// An object as this stage sees it. Its id is its place in the list of all.
 struct RiskObject {
-    std::int32_t id = -1;
     bool grounded = false;  // or held by what was not seen: no risk is reckoned
     double mass_kg = 0;
     double barrier_J = 0;
@@ -38,15 +37,11 @@ struct RiskObject {
     double base_width_m = 0;             // least width of its support polygon
     double base_error_share = 0;         // one standard error of b / h, as a share of it
     double slide_distance_m = -1;        // shortest way to where its support ends; -1: no edge
-    double drop_m = 0;                   // fall from there
     std::vector<InstabilityStep> curve;  // S(W)
     // S(W) by direction and height; null: the curve, whatever the way.
     std::shared_ptr<const physics::Toppling> toppling;
-    // One standard error of its barrier, and of its mass as a share of it; and what they take: how
-    // high its centre of mass is above its support, and whether it slides rather than tips.
-    double barrier_error_J = 0, mass_error_share = 0;
-    double center_height_m = 0;
-    bool slides = false;
+    double barrier_error_J = 0;  // one standard error
+    bool slides = false;         // rather than that it tips
     // Not as measured, but as at an end of that error (risk_error.h): the border of its support
     // lies so much further out, and the roots of its barriers are larger by so much.
     double border_shift_m = 0, root_shift = 0;

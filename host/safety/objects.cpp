@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include "core/random.h"
@@ -27,21 +26,10 @@ std::vector<std::int32_t> movable_object_of_cells(const Surroundings& surroundin
     if (surroundings.cells->size() > 0) {
         check_option("voxel_m", surroundings.cells->voxel_m, 1e-6);
     }
-    std::map<std::int32_t, std::int32_t> index;
-    for (std::size_t o = 0; o < objects.size(); ++o) {
-        if (!objects[o].grounded) index.emplace(objects[o].id, static_cast<std::int32_t>(o));
-    }
-    std::int32_t last_id = -1, last = -1;  // neighbours mostly belong together
-    std::vector<std::int32_t> out(surroundings.object.size(), -1);
-    for (std::size_t c = 0; c < out.size(); ++c) {
-        const std::int32_t id = surroundings.object[c];
-        if (id < 0) continue;
-        if (id != last_id) {
-            const auto found = index.find(id);
-            last_id = id;
-            last = found == index.end() ? -1 : found->second;
-        }
-        out[c] = last;
+    std::vector<std::int32_t> out = surroundings.object;
+    for (std::int32_t& o : out) {
+        const auto at = static_cast<std::size_t>(o);  // of -1 it is beyond all
+        if (at >= objects.size() || objects[at].grounded) o = -1;
     }
     return out;
 }

@@ -11,7 +11,7 @@
 // What the three fields ask of the objects' cells.
 namespace topple::safety {
 
-// Index into `objects` of each solid cell's object, -1 for none and for grounded objects.
+// The object of each solid cell, -1 for none and for grounded objects.
 // Throws Error(usage) where `surroundings` has no cells or not one object per cell.
 std::vector<std::int32_t> movable_object_of_cells(const Surroundings& surroundings,
                                                   std::span<const RiskObject> objects);

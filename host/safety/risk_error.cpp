@@ -14,7 +14,8 @@ namespace {
 double border_m(const RiskObject& object, double barrier_J) {
     const double weight = object.mass_kg * physics::gravity;
     const double rise = weight > 0 ? barrier_J / weight : 0;
-    return physics::edge_distance_m(rise, std::max(object.center_height_m, 0.0));
+    const double height = object.center ? (*object.center)[2] - object.base_m : 0;
+    return physics::edge_distance_m(rise, std::max(height, 0.0));
 }
 
 RiskObject at_end(const RiskObject& object, double errors) {

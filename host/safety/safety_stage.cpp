@@ -34,27 +34,20 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
 
 std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
     std::vector<safety::RiskObject> out;
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-        const Body& o = objects[i];
+    for (const Body& o : objects) {
         safety::RiskObject r;
-        r.id = static_cast<std::int32_t>(i);
         // What is held by nothing that was seen is held by what was not: nobody knows how firmly.
         r.grounded = o.grounded || !o.seen_enough() || o.candidate.support_polygon.empty();
         r.mass_kg = o.candidate.body.mass_kg;
         r.barrier_J = o.instability.barrier_J;
         r.barrier_error_J = o.seen_error_J;
-        r.mass_error_share = r.mass_kg > 0 ? o.body_error.mass_kg / r.mass_kg : 0;
-        r.center_height_m = o.candidate.body.center[2] - o.candidate.support_height_m;
-        r.slides = o.instability.mode == physics::Instability::Mode::slide && o.sliding.found;
+        r.slides = o.instability.mode == physics::Instability::Mode::slide;
         r.base_m = o.candidate.support_height_m;
         r.center = o.candidate.body.center;
         r.height_m = o.box.top_m() - r.base_m;
         r.base_width_m = physics::least_width_m(o.candidate.support_polygon);
         r.base_error_share = physics::slope_error_share(o.overturning);
-        if (o.sliding.found) {
-            r.slide_distance_m = o.sliding.distance_m;
-            r.drop_m = o.sliding.drop_m;
-        }
+        if (o.sliding.found) r.slide_distance_m = o.sliding.distance_m;
         r.curve = o.instability.curve;
         r.toppling = o.toppling;
         r.support_polygon = o.candidate.support_polygon;
@@ -66,7 +59,8 @@ std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
 namespace {
 
 // Risks, and what the errors of barriers and masses make of them and of the categories.
-void weigh_risks(std::span<const safety::RiskObject> at_risk, SafetyStage& out) {
+void weigh_risks(std::span<const Body> objects, std::span<const safety::RiskObject> at_risk,
+                 SafetyStage& out) {
     const auto weaker = safety::at_end(at_risk, -1), firmer = safety::at_end(at_risk, 1);
     out.category.resize(at_risk.size());
     for (safety::Disturbance& d : out.disturbances) {
@@ -75,7 +69,8 @@ void weigh_risks(std::span<const safety::RiskObject> at_risk, SafetyStage& out) 
         d.work_if = {};  // it refers to the field
         std::vector<double> error_J;
         for (std::size_t o = 0; o < at_risk.size(); ++o) {
-            const double share = at_risk[o].mass_error_share;
+            const double mass_kg = at_risk[o].mass_kg;
+            const double share = mass_kg > 0 ? objects[o].body_error.mass_kg / mass_kg : 0;
             error_J.push_back(
                 safety::risk_error_J(out.risk.back()[o], {lower[o], higher[o]}, share));
             safety::CategoryEnds& ends = out.category[o];
@@ -120,7 +115,7 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
             if (!disturbance.gust_m_s.empty()) return disturbance.gust_m_s;
         return safety::tipping_gusts(device, around, at_risk, {});
     });
-    stage("risk", [&] { weigh_risks(at_risk, out); });
+    stage("risk", [&] { weigh_risks(objects.objects, at_risk, out); });
     stage("advice", [&] {
         out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
                             out.disturbances, out.risk, fields, options.friction,

@@ -27,7 +27,7 @@ struct SafetyStage {
     std::vector<double> gust_m_s;                   // by object: that tips it; NaN: none does
 };
 
-// The objects as the fields and the risk see them; ids are their places in the list.
+// The objects as the fields and the risk see them.
 std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects);
 
 SafetyStage assess_safety(device::Device& device, const SolidParts& parts,

@@ -20,7 +20,8 @@ namespace {
 RiskObject post() {
     RiskObject object;
     object.mass_kg = 10;
-    object.center_height_m = 1;
+    object.base_m = 0;
+    object.center = Vec3{0, 0, 1};
     object.height_m = 2;
     object.base_width_m = 0.2;
     object.barrier_J = tipping_energy(10, 1, 0.1);
@@ -89,7 +90,8 @@ TEST(RiskError, FieldsTellTheRisksOfBothEnds) {
     room.floor(0, 4, 0, 3);
     const auto thing = static_cast<std::size_t>(room.box(2, 2.2, 1, 1.2, 0, 1, false, 1000));
     RiskObject& object = room.objects[thing];
-    object.center_height_m = 0.5;
+    object.base_m = 0;
+    object.center = Vec3{2.1, 1.1, 0.5};
     object.barrier_J = tipping_energy(object.mass_kg, 0.5, 0.1);
     object.curve = {{object.barrier_J, 5}};
     object.barrier_error_J = 0.6 * object.barrier_J;

@@ -21,7 +21,6 @@ class Room {
                      bool grounded = true, double density = 700) {
         const auto id = static_cast<std::int32_t>(objects.size());
         safety::RiskObject object;
-        object.id = id;
         object.grounded = grounded;
         object.height_m = z1 - z0;
         object.base_width_m = std::min(x1 - x0, y1 - y0);
