@@ -50,11 +50,10 @@ void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
     for (const auto values : {v, u, std::span<const std::int32_t>(cells.primitive)})
         sort_by(values, order);
     const auto line = [&](std::size_t n) { return std::tuple(cells.primitive[n], u[n], v[n]); };
-    std::vector<std::uint64_t> lines(graph.silhouette_m2.size());
+    Table<PrimitiveId, std::uint64_t> lines(graph.silhouette_m2.size());
     for (std::size_t n = 0; n < order.size(); ++n) {
         const std::int32_t p = cells.primitive[order[n]];
-        if (p >= 0 && (n == 0 || line(order[n]) != line(order[n - 1])))
-            ++lines[static_cast<std::size_t>(p)];
+        if (p >= 0 && (n == 0 || line(order[n]) != line(order[n - 1]))) ++lines[p];
     }
     for (std::size_t p = 0; p < lines.size(); ++p)
         graph.silhouette_m2[p][axis] =
@@ -218,17 +217,17 @@ struct Carrier {
 
 // The outlines and heights of contacts: most of the time that contacts take.
 void find_outlines(std::span<const Carrier> carriers,
-                   const std::vector<std::vector<Underside>>& undersides, double h,
+                   const Table<ObjectId, std::vector<Underside>>& undersides, double h,
                    const Shapes& shapes, ThreadPool& threads, ContactGraph& graph) {
-    std::vector<bool> asked(undersides.size(), false);
-    std::vector<std::size_t> wide;
+    Table<PrimitiveId, bool> asked(undersides.size(), false);
+    std::vector<std::int32_t> wide;
     for (const Carrier& c : carriers) {
-        const auto below = static_cast<std::size_t>(std::max(c.supporter, 0));
+        const std::int32_t below = std::max(c.supporter, 0);
         if (!c.wide || asked[below]) continue;
         asked[below] = true;
         wide.push_back(below);
     }
-    std::vector<std::vector<std::array<double, 2>>> hulls(undersides.size());
+    Table<PrimitiveId, std::vector<std::array<double, 2>>> hulls(undersides.size());
     threads.each(wide.size(), 1,
                  [&](std::size_t n) { hulls[wide[n]] = hull_of(undersides[wide[n]], h); });
     graph.carryings.resize(carriers.size());
@@ -243,9 +242,8 @@ void find_outlines(std::span<const Carrier> carriers,
         }
         const double height = heights.mean_m();
         if (c.wide)
-            add_hidden_corners(undersides[static_cast<std::size_t>(c.supported)], height,
-                               hulls[static_cast<std::size_t>(c.supporter)], h, c.supported, shapes,
-                               corners);
+            add_hidden_corners(undersides[c.supported], height, hulls[c.supporter], h, c.supported,
+                               shapes, corners);
         Outline outline = graph::outline_of(corners);
         graph.carryings[n] = {
             c.supporter,    c.supported, c.area_m2, height, std::move(outline.polygon),
@@ -259,21 +257,21 @@ constexpr double least_on_fragments = 0.15;
 
 // What is not seen to hang, and is not seen to stand either, stands on the highest level surface
 // under it: others hide its foot, and it hides its shadow on the table.
-void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
-                          const std::vector<Extent>& extents, double h, const Shapes& shapes,
+void add_hidden_carryings(const Table<ObjectId, std::vector<Underside>>& undersides,
+                          const Table<PrimitiveId, Extent>& extents, double h, const Shapes& shapes,
                           ContactGraph& graph) {
     constexpr double least_hidden = 0.5;  // share of the columns below which nobody has seen
     std::vector<Carrying> found;
     for (std::int32_t p = 0; p < graph.primitives; ++p) {
-        const std::vector<Underside>& own = undersides[static_cast<std::size_t>(p)];
+        const std::vector<Underside>& own = undersides[p];
         if (own.empty() || !graph.carriers_of(p).empty()) continue;
-        const Extent& e = extents[static_cast<std::size_t>(p)];
+        const Extent& e = extents[p];
         Carrying best;
         for (std::int32_t q = 0; q < graph.primitives; ++q) {
-            const Extent& under = extents[static_cast<std::size_t>(q)];
+            const Extent& under = extents[q];
             if (q == p || under.columns < e.columns || !under.holds(e.middle())) continue;
             const double top = under.mean_top();
-            if (top * h > graph.lowest_m[static_cast<std::size_t>(p)] + 1.5 * h) continue;
+            if (top * h > graph.lowest_m[p] + 1.5 * h) continue;
             if (best.supporter < 0 || top * h > best.height_m) {
                 best.supporter = q;
                 best.height_m = top * h;
@@ -297,7 +295,7 @@ void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
         pair.b = std::max(c.supporter, c.supported);
         pair.area_m2 = c.area_m2;
         pair.normal = {0, 0, c.supporter < c.supported ? 1.0 : -1.0};
-        const Extent& e = extents[static_cast<std::size_t>(c.supported)];
+        const Extent& e = extents[c.supported];
         pair.center = {e.middle()[0] * h, e.middle()[1] * h, c.height_m};
         const auto at = std::ranges::lower_bound(graph.pairs, ends(pair), {}, ends);
         if (at == graph.pairs.end() || ends(*at) != ends(pair)) graph.pairs.insert(at, pair);
@@ -315,14 +313,12 @@ void add_hidden_joints(device::Device& device, const SolidCells& cells, std::int
                        ContactGraph& graph) {
     constexpr double longest_m = 0.08;
     constexpr double least_hidden = 0.3;  // of the columns between the two
-    std::vector<bool> hangs(static_cast<std::size_t>(primitives), false);
-    for (std::int32_t p = 0; p < primitives; ++p)
-        hangs[static_cast<std::size_t>(p)] = graph.carriers_of(p).empty();
+    Table<PrimitiveId, bool> hangs(static_cast<std::size_t>(primitives), false);
+    for (std::int32_t p = 0; p < primitives; ++p) hangs[p] = graph.carriers_of(p).empty();
     std::vector<physics::TouchingPair> joints;
     for (const physics::TouchingPair& pair : physics::touching_pairs(
              device, cells, primitives, static_cast<unsigned>(longest_m / cells.voxel_m))) {
-        if (!hangs[static_cast<std::size_t>(pair.a)] && !hangs[static_cast<std::size_t>(pair.b)])
-            continue;
+        if (!hangs[pair.a] && !hangs[pair.b]) continue;
         if (std::ranges::binary_search(graph.pairs, ends(pair), {}, ends)) continue;
         if (std::abs(pair.normal[2]) > 0.5) {
             // Air that was seen is no joint.
@@ -384,20 +380,20 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;
     std::vector<std::int32_t> alone(count);  // each primitive as an object of its own
     std::iota(alone.begin(), alone.end(), 0);
-    const std::vector<std::vector<Underside>> undersides = graph::undersides(cells, alone, count);
-    std::vector<Extent> extents(count);
+    const Table<ObjectId, std::vector<Underside>> undersides =
+        graph::undersides(cells, alone, count);
+    Table<PrimitiveId, Extent> extents(count);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t upper = cells.primitive[n];
         if (upper < 0) continue;
-        const auto p = static_cast<std::size_t>(upper);
-        graph.lowest_m[p] = std::min(graph.lowest_m[p], cells.k[n] * h);
-        graph.highest_m[p] = std::max(graph.highest_m[p], (cells.k[n] + 1) * h);
-        graph.section_m2[p] += h * h * h;
+        graph.lowest_m[upper] = std::min(graph.lowest_m[upper], cells.k[n] * h);
+        graph.highest_m[upper] = std::max(graph.highest_m[upper], (cells.k[n] + 1) * h);
+        graph.section_m2[upper] += h * h * h;
         const bool last = n + 1 == cells.size() || cells.i[n + 1] != cells.i[n] ||
                           cells.j[n + 1] != cells.j[n] || cells.primitive[n + 1] != upper;
         if (last)
-            extents[p].add(cells.i[n], cells.j[n],
-                           shapes.top(cells.i[n], cells.j[n], cells.k[n], upper));
+            extents[upper].add(cells.i[n], cells.j[n],
+                               shapes.top(cells.i[n], cells.j[n], cells.k[n], upper));
         // Cells are sorted by (i, j, k): the one below in the column, if any, comes right before.
         if (n == 0 || cells.i[n - 1] != cells.i[n] || cells.j[n - 1] != cells.j[n]) continue;
         const std::int32_t lower = cells.primitive[n - 1];
@@ -414,15 +410,14 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     std::vector<Carrier> carriers;
     for (const auto& [key, columns] : carried) {
         const auto& [supported, supporter] = key;
-        const Extent& load = extents[static_cast<std::size_t>(supported)];
+        const Extent& load = extents[supported];
         const auto met = static_cast<double>(columns.size());
         const bool fragments = supporter < 0;
         if (fragments && met < least_on_fragments * static_cast<double>(load.columns)) continue;
         const double area = fragments ? met : upward_faces(graph.pairs, supporter, supported);
         if (area <= 0) continue;
         // A surface at least half as wide may go on where it is hidden; a leg does not.
-        const bool wide =
-            !fragments && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns;
+        const bool wide = !fragments && 2 * extents[supporter].columns >= load.columns;
         carriers.push_back({supporter, supported, area * h * h, wide, columns});
     }
     find_outlines(carriers, undersides, h, shapes, device.threads(), graph);
@@ -431,8 +426,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     add_hidden_joints(device, cells, primitives, hidden, graph);
     for (const auto& [key, columns] : gaps) {
         const auto& [upper, lower, empty] = key;
-        graph.clearances[static_cast<std::size_t>(upper)].push_back(
-            {lower, empty * h, static_cast<double>(columns) * h * h});
+        graph.clearances[upper].push_back({lower, empty * h, static_cast<double>(columns) * h * h});
     }
     return graph;
 }

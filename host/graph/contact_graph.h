@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/table.h"
 #include "device/device.h"
 #include "physics/bodies.h"
 
@@ -43,13 +44,13 @@ struct Clearance {
 struct ContactGraph {
     std::int32_t primitives = 0;
     double voxel_m = 0;
-    std::vector<physics::TouchingPair> pairs;          // sorted by (a, b)
-    std::vector<Carrying> carryings;                   // sorted by (supported, supporter)
-    std::vector<Leaning> leanings;                     // sorted by (primitive, against)
-    std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
-    std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by (below, gap)
-    std::vector<double> lowest_m, highest_m;           // by primitive
-    std::vector<double> section_m2;                    // by primitive: mean level cross-section
+    std::vector<physics::TouchingPair> pairs;                 // sorted by (a, b)
+    std::vector<Carrying> carryings;                          // sorted by (supported, supporter)
+    std::vector<Leaning> leanings;                            // sorted by (primitive, against)
+    Table<PrimitiveId, std::array<double, 3>> silhouette_m2;  // area seen along x, y, z
+    Table<PrimitiveId, std::vector<Clearance>> clearances;    // sorted by (below, gap)
+    Table<PrimitiveId, double> lowest_m, highest_m;
+    Table<PrimitiveId, double> section_m2;  // mean level cross-section
 
     // What carries one primitive: a range of `carryings`.
     std::span<const Carrying> carriers_of(std::int32_t primitive) const;

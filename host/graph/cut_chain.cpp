@@ -14,15 +14,15 @@ namespace topple::graph {
 Adjacency::Adjacency(std::int32_t nodes, std::span<const Edge> edges)
     : first(static_cast<std::size_t>(nodes) + 1), links(2 * edges.size()) {
     for (const Edge& e : edges) {
-        ++first[static_cast<std::size_t>(e.a) + 1];
-        ++first[static_cast<std::size_t>(e.b) + 1];
+        ++first[e.a + 1];
+        ++first[e.b + 1];
     }
     std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    Table<NodeId, std::size_t> next(first.begin(), first.end() - 1);
     for (std::uint32_t i = 0; i < edges.size(); ++i) {
         const double q = edges[i].turn_on;
         const auto link = [&](std::int32_t from, std::int32_t to) {
-            links[next[static_cast<std::size_t>(from)]++] = {to, i, q, std::log1p(-q)};
+            links[next[from]++] = {to, i, q, std::log1p(-q)};
         };
         link(edges[i].a, edges[i].b);
         link(edges[i].b, edges[i].a);
@@ -30,7 +30,7 @@ Adjacency::Adjacency(std::int32_t nodes, std::span<const Edge> edges)
 }
 
 CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random random,
-                   std::span<const std::int32_t> start)
+                   TableView<NodeId, std::int32_t> start)
     : problem_(problem),
       energies_(energies),
       random_(random),
@@ -56,7 +56,7 @@ CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random rand
     }
 }
 
-void CutChain::begin(std::span<const std::int32_t> start) {
+void CutChain::begin(TableView<NodeId, std::int32_t> start) {
     // What shares a label with a pinned node is in its group; the others' labels are their lowest
     // nodes' numbers.
     std::map<std::int32_t, std::int32_t> label_of_start;
@@ -64,12 +64,11 @@ void CutChain::begin(std::span<const std::int32_t> start) {
         if (problem_.pinned[n] && !start.empty()) label_of_start[start[n]] = pinned_label;
     }
     for (std::int32_t n = 0; n < static_cast<std::int32_t>(label_.size()); ++n) {
-        const auto at = static_cast<std::size_t>(n);
-        std::int32_t l = is_pinned(n) ? pinned_label : n + 1;
-        if (!start.empty()) l = label_of_start.try_emplace(start[at], n + 1).first->second;
-        label_[at] = l;
-        members_[static_cast<std::size_t>(l)].push_back(n);
-        key_[static_cast<std::size_t>(l)] ^= problem_.key[at];
+        LabelId l = is_pinned(n) ? pinned_label : LabelId(n + 1);
+        if (!start.empty()) l = label_of_start.try_emplace(start[n], n + 1).first->second;
+        label_[n] = l;
+        members_[l].push_back(n);
+        key_[l] ^= problem_.key[n];
     }
 }
 
@@ -112,55 +111,51 @@ void CutChain::fetch_energies() {
 
 void CutChain::take() {
     energy_ += change(from_energy_, to_energy_);
-    const auto from = static_cast<std::size_t>(from_), to = static_cast<std::size_t>(to_);
-    members_[to] = group_with_moved().nodes;
-    members_[from] = group_less_moved().nodes;
-    if (members_[from].empty()) lowest_free_ = std::min(lowest_free_, from);
-    key_[from] = from_key_;
-    key_[to] = to_key_;
-    energy_of_label_[from] = from_energy_;
-    energy_of_label_[to] = to_energy_;
+    members_[to_] = group_with_moved().nodes;
+    members_[from_] = group_less_moved().nodes;
+    if (members_[from_].empty()) lowest_free_ = std::min(lowest_free_, from_.place());
+    key_[from_] = from_key_;
+    key_[to_] = to_key_;
+    energy_of_label_[from_] = from_energy_;
+    energy_of_label_[to_] = to_energy_;
     for (const std::int32_t n : moved_) {
         for (const Link& link : problem_.adjacency.of(n)) {
             if (is_moved_.has(link.node)) continue;
-            const std::int32_t l = label_of(link.node);
+            const LabelId l = label_of(link.node);
             if (l == from_) joints_.part(link.edge, samples_);
             if (l == to_) joints_.join(link.edge, samples_);
         }
     }
-    for (const std::int32_t n : moved_) label_[static_cast<std::size_t>(n)] = to_;
+    for (const std::int32_t n : moved_) label_[n] = to_;
 }
 
 GroupQuery CutChain::group_less_moved() const {
     GroupQuery q{{}, from_ == pinned_label};
-    std::ranges::copy_if(members_[static_cast<std::size_t>(from_)], std::back_inserter(q.nodes),
+    std::ranges::copy_if(members_[from_], std::back_inserter(q.nodes),
                          [&](std::int32_t n) { return !is_moved_.has(n); });
     return q;
 }
 
 GroupQuery CutChain::group_with_moved() const {
     GroupQuery q{{}, to_ == pinned_label};
-    std::ranges::merge(members_[static_cast<std::size_t>(to_)], moved_,
-                       std::back_inserter(q.nodes));
+    std::ranges::merge(members_[to_], moved_, std::back_inserter(q.nodes));
     return q;
 }
 
 double CutChain::change(double from_after, double to_after) const {
-    return from_after + to_after - energy_of_label_[static_cast<std::size_t>(from_)] -
-           energy_of_label_[static_cast<std::size_t>(to_)];
+    return from_after + to_after - energy_of_label_[from_] - energy_of_label_[to_];
 }
 
 // False where the flip drawn is none.
 bool CutChain::draw() {
-    if (label_.empty() || !grow_component(static_cast<std::int32_t>(random_.below(label_.size()))))
-        return false;
+    if (label_.empty() || !grow_component(random_.below(label_.size()))) return false;
     choose_target();
     if (to_ == from_ || !target_is_allowed() || !stays_connected()) return false;
-    from_key_ = key_[static_cast<std::size_t>(from_)];
-    to_key_ = key_[static_cast<std::size_t>(to_)];
+    from_key_ = key_[from_];
+    to_key_ = key_[to_];
     for (const std::int32_t n : moved_) {
-        from_key_ ^= problem_.key[static_cast<std::size_t>(n)];
-        to_key_ ^= problem_.key[static_cast<std::size_t>(n)];
+        from_key_ ^= problem_.key[n];
+        to_key_ ^= problem_.key[n];
     }
     return true;
 }
@@ -171,9 +166,9 @@ bool CutChain::draw() {
 // node picks a component with probability proportional to its size, which is the same in the
 // state before and after the flip, and so cancels in Eq. 11 as a uniform choice would. False
 // where it holds a pinned node: that one does not move.
-bool CutChain::grow_component(std::int32_t seed) {
+bool CutChain::grow_component(NodeId seed) {
     if (is_pinned(seed)) return false;
-    from_ = label_[static_cast<std::size_t>(seed)];
+    from_ = label_[seed];
     moved_.clear();
     is_moved_.clear();
     is_moved_.add(seed);
@@ -199,7 +194,7 @@ void CutChain::sort_moved() {
         return;
     }
     moved_.clear();
-    std::ranges::copy_if(members_[static_cast<std::size_t>(from_)], std::back_inserter(moved_),
+    std::ranges::copy_if(members_[from_], std::back_inserter(moved_),
                          [&](std::int32_t n) { return is_moved_.has(n); });
 }
 
@@ -214,8 +209,8 @@ void CutChain::choose_target() {
     for (const std::int32_t n : moved_) {
         for (const Link& link : problem_.adjacency.of(n)) {
             if (is_moved_.has(link.node)) continue;
-            const std::int32_t l = label_of(link.node);
-            double& sum = log_miss_to_[static_cast<std::size_t>(l)];
+            const LabelId l = label_of(link.node);
+            double& sum = log_miss_to_[l];
             if (seen_label_.add(l)) {
                 targets_.push_back(l);
                 sum = 0;
@@ -228,14 +223,12 @@ void CutChain::choose_target() {
     const std::uint64_t pick = random_.below(targets_.size() + 1);
     if (pick == targets_.size()) {
         // A fresh group; where the component already is a whole group, that is no change.
-        const bool whole = members_[static_cast<std::size_t>(from_)].size() == moved_.size();
+        const bool whole = members_[from_].size() == moved_.size();
         to_ = whole ? from_ : free_label();
     } else {
         to_ = targets_[pick];
     }
-    const auto log_misses = [&](std::int32_t l) {
-        return seen_label_.has(l) ? log_miss_to_[static_cast<std::size_t>(l)] : 0;
-    };
+    const auto log_misses = [&](LabelId l) { return seen_label_.has(l) ? log_miss_to_[l] : 0; };
     log_cut_ratio_ = log_misses(to_) - log_misses(from_);
 }
 
@@ -244,7 +237,7 @@ void CutChain::choose_target() {
 bool CutChain::target_is_allowed() const {
     if (problem_.apart.empty()) return true;
     return std::ranges::none_of(moved_, [&](std::int32_t n) {
-        return std::ranges::any_of(problem_.apart[static_cast<std::size_t>(n)],
+        return std::ranges::any_of(problem_.apart[n],
                                    [&](std::int32_t other) { return label_of(other) == to_; });
     });
 }
@@ -266,7 +259,7 @@ bool CutChain::stays_connected() {
 }
 // Whether a node reaches a pinned one, or one that is seen, within its group less the moved
 // part. All on the way there are seen then.
-bool CutChain::reaches(std::int32_t start, bool shell) {
+bool CutChain::reaches(NodeId start, bool shell) {
     open_.assign(1, start);
     own_.clear();
     own_.add(start);
@@ -282,9 +275,9 @@ bool CutChain::reaches(std::int32_t start, bool shell) {
     return found;
 }
 
-std::int32_t CutChain::free_label() {
+LabelId CutChain::free_label() {
     while (lowest_free_ < members_.size() && !members_[lowest_free_].empty()) ++lowest_free_;
-    return static_cast<std::int32_t>(lowest_free_);
+    return lowest_free_;
 }
 
 }  // namespace topple::graph

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/random.h"
@@ -14,7 +15,9 @@
 
 namespace topple::graph {
 
-inline constexpr std::int32_t pinned_label = 0;
+// What a chain calls a group: its places stay when it is empty.
+using LabelId = Id<struct Labels>;
+inline constexpr LabelId pinned_label = 0;
 
 // An edge as one of its nodes sees it.
 struct Link {
@@ -25,12 +28,11 @@ struct Link {
 
 // The links of each node, those of one after those of the other.
 struct Adjacency {
-    std::vector<std::size_t> first;
+    Table<NodeId, std::size_t> first;
     std::vector<Link> links;
 
     Adjacency(std::int32_t nodes, std::span<const Edge> edges);
-    std::span<const Link> of(std::int32_t node) const {
-        const auto n = static_cast<std::size_t>(node);
+    std::span<const Link> of(NodeId n) const {
         return std::span(links).subspan(first[n], first[n + 1] - first[n]);
     }
 };
@@ -38,15 +40,15 @@ struct Adjacency {
 // What all chains share.
 struct CutProblem {
     std::span<const Edge> edges;
-    const std::vector<bool>& pinned;
+    Table<NodeId, bool> pinned;
     Adjacency adjacency;
-    std::vector<GroupKey> key;                         // of each node
-    std::span<const std::vector<std::int32_t>> apart;  // see SwendsenWangOptions
+    Table<NodeId, GroupKey> key;
+    TableView<NodeId, std::vector<std::int32_t>> apart;  // see SwendsenWangOptions
 
-    CutProblem(std::int32_t nodes, std::span<const Edge> all, const std::vector<bool>& held,
-               std::span<const std::vector<std::int32_t>> kept_apart = {})
+    CutProblem(std::int32_t nodes, std::span<const Edge> all, Table<NodeId, bool> held,
+               TableView<NodeId, std::vector<std::int32_t>> kept_apart = {})
         : edges(all),
-          pinned(held),
+          pinned(std::move(held)),
           adjacency(nodes, all),
           key(keys_of_nodes(nodes)),
           apart(kept_apart) {}
@@ -75,7 +77,7 @@ class CutChain {
   public:
     // start: see SwendsenWangOptions.
     CutChain(const CutProblem& problem, EnergyCache& energies, Random random,
-             std::span<const std::int32_t> start = {});
+             TableView<NodeId, std::int32_t> start = {});
 
     // Proposes one flip and takes it or leaves it.
     void step(double temperature);
@@ -89,21 +91,21 @@ class CutChain {
     std::uint64_t samples_joined(std::size_t edge) const { return joints_.until(edge, samples_); }
 
   private:
-    bool is_pinned(std::int32_t n) const { return problem_.pinned[static_cast<std::size_t>(n)]; }
-    std::int32_t label_of(std::int32_t n) const { return label_[static_cast<std::size_t>(n)]; }
-    GroupQuery group(std::size_t l) const { return {members_[l], l == pinned_label}; }
+    bool is_pinned(NodeId n) const { return problem_.pinned[n]; }
+    LabelId label_of(NodeId n) const { return label_[n]; }
+    GroupQuery group(LabelId l) const { return {members_[l], l == pinned_label}; }
     GroupQuery group_less_moved() const;
     GroupQuery group_with_moved() const;
 
     bool draw();
-    bool grow_component(std::int32_t seed);
+    bool grow_component(NodeId seed);
     void sort_moved();
     void choose_target();
     bool target_is_allowed() const;
     bool stays_connected();
-    bool reaches(std::int32_t start, bool shell);
-    std::int32_t free_label();
-    void begin(std::span<const std::int32_t> start);
+    bool reaches(NodeId start, bool shell);
+    LabelId free_label();
+    void begin(TableView<NodeId, std::int32_t> start);
     double change(double from_after, double to_after) const;
     bool ruled_out(double most_change);
     void fetch_energies();
@@ -112,10 +114,10 @@ class CutChain {
     const CutProblem& problem_;
     EnergyCache& energies_;
     Random random_;
-    std::vector<std::int32_t> label_;
-    std::vector<Group> members_;  // by label, as the two below
-    std::vector<GroupKey> key_;
-    std::vector<double> energy_of_label_;
+    Table<NodeId, std::int32_t> label_;
+    Table<LabelId, Group> members_;
+    Table<LabelId, GroupKey> key_;
+    Table<LabelId, double> energy_of_label_;
     double energy_ = 0;
     // A group of two or more leaves a label free, and none other is asked for one.
     std::size_t lowest_free_ = 1;
@@ -124,7 +126,7 @@ class CutChain {
 
     // The flip that is proposed, and the groups after it.
     std::vector<std::int32_t> moved_;
-    std::int32_t from_ = 0, to_ = 0;
+    LabelId from_ = 0, to_ = 0;
     double log_cut_ratio_ = 0;  // ln of the products of (1 - q_e) in Eq. 11
     GroupKey from_key_, to_key_;
     double from_energy_ = 0, to_energy_ = 0;
@@ -132,7 +134,7 @@ class CutChain {
     // Kept for their memory: what one proposal meets.
     StampedSet is_moved_, seen_, own_, seen_label_;
     std::vector<std::int32_t> targets_, border_, open_;
-    std::vector<double> log_miss_to_;  // by label
+    Table<LabelId, double> log_miss_to_;
     std::vector<EnergyCache::Missing> missing_;
 };
 

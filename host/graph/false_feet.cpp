@@ -19,14 +19,14 @@ constexpr std::int32_t no_foot = std::numeric_limits<std::int32_t>::max();
 // The lowest cell of each object of which the surfaces that bound it leave anything, and its lowest
 // cell of all.
 struct Ends {
-    std::vector<std::int32_t> solid, lowest;
+    Table<ObjectId, std::int32_t> solid, lowest;
 };
 Ends lower_ends(const SolidCells& cells, const BoundaryCells& boundary,
                 std::span<const std::int32_t> object, std::size_t objects) {
     Ends out{std::vector(objects, no_foot), std::vector(objects, no_foot)};
     for (std::size_t n = 0; n < cells.size(); ++n) {
         if (object[n] < 0) continue;
-        const auto o = static_cast<std::size_t>(object[n]);
+        const ObjectId o = object[n];
         out.lowest[o] = std::min(out.lowest[o], cells.k[n]);
         if (cells.k[n] >= out.solid[o]) continue;
         const std::size_t b = boundary.find(cells.i[n], cells.j[n], cells.k[n], cells.primitive[n]);
@@ -37,8 +37,8 @@ Ends lower_ends(const SolidCells& cells, const BoundaryCells& boundary,
 
 // The lowest cell that was seen of each object, or that hangs together with such: what lies below
 // is no foot. Nor is what reaches further than noise does below all that its surfaces leave of it.
-std::vector<std::int32_t> true_feet(const SolidCells& cells, const BoundaryCells& boundary,
-                                    std::span<const std::int32_t> object, std::size_t objects) {
+Table<ObjectId, std::int32_t> true_feet(const SolidCells& cells, const BoundaryCells& boundary,
+                                        std::span<const std::int32_t> object, std::size_t objects) {
     UnionFind pieces(cells.size());
     const auto join = [&](std::size_t m, std::size_t n) {
         if (object[n] >= 0 && object[n] == object[m]) pieces.join(m, n);
@@ -48,10 +48,10 @@ std::vector<std::int32_t> true_feet(const SolidCells& cells, const BoundaryCells
     std::vector<bool> seen(cells.size(), false);  // by a piece's root
     for (std::size_t n = 0; n < cells.size(); ++n)
         if (cells.basis[n] == Basis::surface) seen[pieces.root(n)] = true;
-    std::vector<std::int32_t> out(objects, no_foot);
+    Table<ObjectId, std::int32_t> out(objects, no_foot);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         if (object[n] < 0 || !seen[pieces.root(n)]) continue;
-        std::int32_t& low = out[static_cast<std::size_t>(object[n])];
+        std::int32_t& low = out[object[n]];
         low = std::min(low, cells.k[n]);
     }
     for (std::int32_t& low : out)  // of what was not seen at all there is nothing to tell
@@ -68,12 +68,11 @@ std::vector<std::int32_t> true_feet(const SolidCells& cells, const BoundaryCells
 }  // namespace
 
 std::shared_ptr<const SolidScene> without_false_feet(
-    const std::shared_ptr<const SolidScene>& solids,
-    std::span<const std::int32_t> object_of_primitive, std::int32_t grounded) {
-    const auto object_of = [&](std::int32_t primitive) {
-        const std::int32_t o =
-            primitive < 0 ? -1 : object_of_primitive[static_cast<std::size_t>(primitive)];
-        return o == grounded ? -1 : o;
+    const std::shared_ptr<const SolidScene>& solids, ObjectOf object_of_primitive,
+    std::int32_t grounded) {
+    const auto object_of = [&](PrimitiveId primitive) {
+        const ObjectId o = object_of_primitive(primitive);
+        return o == grounded ? ObjectId() : o;
     };
     SolidCells cells = solids->cells();
     std::vector<std::int32_t> object;
@@ -82,10 +81,9 @@ std::shared_ptr<const SolidScene> without_false_feet(
     for (const std::int32_t o : object) objects = std::max(objects, o + 1);
     const BoundaryCells& boundary = solids->boundary();
     const auto feet = true_feet(cells, boundary, object, static_cast<std::size_t>(objects));
-    const auto foot = [&](std::int32_t o) { return feet[static_cast<std::size_t>(o)]; };
     bool changed = false;
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        if (object[n] < 0 || cells.k[n] >= foot(object[n])) continue;
+        if (object[n] < 0 || cells.k[n] >= feet[object[n]]) continue;
         cells.primitive[n] = -1;
         changed = true;
     }
@@ -94,7 +92,7 @@ std::shared_ptr<const SolidScene> without_false_feet(
     std::vector<bool> kept(boundary.size(), true);
     for (std::size_t b = 0; b < boundary.size(); ++b) {
         const std::int32_t o = object_of(boundary.primitive[b]);
-        kept[b] = o < 0 || o >= objects || boundary.k[b] + 1 >= foot(o);
+        kept[b] = o < 0 || o >= objects || boundary.k[b] + 1 >= feet[o];
     }
     std::vector<Role> roles;
     for (std::size_t p = 0; p < solids->primitives(); ++p)

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "core/object_of.h"
 #include "core/solid_scene.h"
 
 namespace topple::graph {
@@ -17,7 +18,7 @@ namespace topple::graph {
 // below all else of it than noise does.
 // grounded: the object that is left as it is; -1: none. The same solids where there are none.
 std::shared_ptr<const SolidScene> without_false_feet(
-    const std::shared_ptr<const SolidScene>& solids,
-    std::span<const std::int32_t> object_of_primitive, std::int32_t grounded);
+    const std::shared_ptr<const SolidScene>& solids, ObjectOf object_of_primitive,
+    std::int32_t grounded);
 
 }  // namespace topple::graph

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "graph/joints.h"
+#include "graph/swendsen_wang.h"
 
 namespace topple::graph {
 
@@ -15,9 +16,8 @@ namespace topple::graph {
 // pinned are one group from the start, and `to_pinned`, of each
 // node, counts beside its joints with them. Of equal sums the lowest nodes come first.
 // apart: of each node those that no group may hold beside it, or empty.
-std::vector<std::int32_t> contract_greedily(std::int32_t nodes, std::span<const Joint> joints,
-                                            const std::vector<bool>& pinned,
-                                            std::span<const double> to_pinned,
-                                            std::span<const std::vector<std::int32_t>> apart = {});
+Table<NodeId, std::int32_t> contract_greedily(
+    std::int32_t nodes, std::span<const Joint> joints, const Table<NodeId, bool>& pinned,
+    TableView<NodeId, double> to_pinned, TableView<NodeId, std::vector<std::int32_t>> apart = {});
 
 }  // namespace topple::graph

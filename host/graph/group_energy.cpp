@@ -9,7 +9,7 @@
 namespace topple::graph {
 
 GroupEnergy::GroupEnergy(const ContactGraph& contacts,
-                         std::span<const physics::MassProperties> bodies,
+                         TableView<PrimitiveId, physics::MassProperties> bodies,
                          std::span<const Joint> joints, const ShellOdds& shell,
                          double standing_weight)
     : contacts_(contacts),
@@ -17,8 +17,7 @@ GroupEnergy::GroupEnergy(const ContactGraph& contacts,
       shell_(shell),
       standing_weight_(standing_weight),
       neighbours_(bodies.size()) {
-    for (const Joint& j : joints)
-        neighbours_[static_cast<std::size_t>(j.a)].push_back({j.b, j.log_odds});
+    for (const Joint& j : joints) neighbours_[j.a].push_back({j.b, j.log_odds});
 }
 
 double GroupEnergy::joined(const GroupQuery& query) const {
@@ -27,14 +26,13 @@ double GroupEnergy::joined(const GroupQuery& query) const {
     members.clear(bodies_.size());
     for (const std::int32_t n : query.nodes) members.add(n);
     double sum = 0;
-    for (const std::int32_t n : query.nodes) {
-        const auto at = static_cast<std::size_t>(n);
-        const bool fixed = shell_.pinned[at];
-        if (query.pinned && !fixed) sum -= shell_.log_odds[at];
-        for (const Neighbour& neighbour : neighbours_[at]) {
+    for (const PrimitiveId p : query.nodes) {
+        const bool fixed = shell_.pinned[p];
+        if (query.pinned && !fixed) sum -= shell_.log_odds[p];
+        for (const Neighbour& neighbour : neighbours_[p]) {
             if (!members.has(neighbour.other)) continue;
             // The room is one body whatever the sampler does.
-            if (fixed && shell_.pinned[static_cast<std::size_t>(neighbour.other)]) continue;
+            if (fixed && shell_.pinned[neighbour.other]) continue;
             sum -= neighbour.log_odds;
         }
     }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/table.h"
 #include "graph/contact_graph.h"
 #include "graph/joints.h"
 #include "graph/stable_objects.h"
@@ -19,7 +20,8 @@ namespace topple::graph {
 // are taken for the room's anyhow; S = 0. Keeps references to its arguments.
 class GroupEnergy {
   public:
-    GroupEnergy(const ContactGraph& contacts, std::span<const physics::MassProperties> bodies,
+    GroupEnergy(const ContactGraph& contacts,
+                TableView<PrimitiveId, physics::MassProperties> bodies,
                 std::span<const Joint> joints, const ShellOdds& shell, double standing_weight);
 
     double operator()(const GroupQuery& query) const;
@@ -35,10 +37,10 @@ class GroupEnergy {
     double standing(const GroupQuery& query) const;
 
     const ContactGraph& contacts_;
-    std::span<const physics::MassProperties> bodies_;
+    TableView<PrimitiveId, physics::MassProperties> bodies_;
     const ShellOdds& shell_;
     double standing_weight_;
-    std::vector<std::vector<Neighbour>> neighbours_;
+    Table<PrimitiveId, std::vector<Neighbour>> neighbours_;
     mutable ScratchSets members_;
 };
 

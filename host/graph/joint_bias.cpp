@@ -5,9 +5,9 @@
 
 namespace topple::graph {
 
-std::vector<Joint> biased_joints(std::span<const Joint> joints, const std::vector<bool>& pinned,
-                                 double bias) {
-    const auto free = [&](std::int32_t p) { return !pinned[static_cast<std::size_t>(p)]; };
+std::vector<Joint> biased_joints(std::span<const Joint> joints,
+                                 const Table<PrimitiveId, bool>& pinned, double bias) {
+    const auto free = [&](PrimitiveId p) { return !pinned[p]; };
     const auto things = static_cast<double>(std::ranges::count(pinned, false));
     const auto between = static_cast<double>(
         std::ranges::count_if(joints, [&](const Joint& j) { return free(j.a) && free(j.b); }));

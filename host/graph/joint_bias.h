@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/table.h"
 #include "graph/joints.h"
 
 namespace topple::graph {
@@ -19,7 +20,7 @@ inline constexpr double most_neighbours = 6;
 // being the mean number of neighbours of what is not pinned to the room. All get the same, those
 // that are alone as well: what touches another thing once is no likelier to be a part of it. Same
 // order.
-std::vector<Joint> biased_joints(std::span<const Joint> joints, const std::vector<bool>& pinned,
-                                 double bias);
+std::vector<Joint> biased_joints(std::span<const Joint> joints,
+                                 const Table<PrimitiveId, bool>& pinned, double bias);
 
 }  // namespace topple::graph

@@ -40,8 +40,9 @@ double margin(const physics::Candidate& c) {
 class Rows {
   public:
     Rows(const geometry::SurfaceSamples& samples, const geometry::PrimitiveShapes& shapes,
-         const ContactGraph& contacts, std::span<const physics::MassProperties> bodies,
-         const geometry::SurfaceSeams& seams, std::span<const float> shell, ThreadPool& threads)
+         const ContactGraph& contacts, TableView<PrimitiveId, physics::MassProperties> bodies,
+         const geometry::SurfaceSeams& seams, TableView<PrimitiveId, float> shell,
+         ThreadPool& threads)
         : samples_(samples),
           shapes_(shapes),
           contacts_(contacts),
@@ -96,10 +97,10 @@ class Rows {
         const physics::TouchingPair* touching = nullptr;
         const Carrying *a_carries = nullptr, *b_carries = nullptr;
     };
-    const Node& node_of(std::int32_t p) const { return nodes_[static_cast<std::size_t>(p)]; }
+    const Node& node_of(PrimitiveId p) const { return nodes_[p]; }
 
-    void add(std::int32_t p, double near) {
-        Node& node = nodes_[static_cast<std::size_t>(p)];
+    void add(PrimitiveId p, double near) {
+        Node& node = nodes_[p];
         node.near += near;
         node.borders += 1;
     }
@@ -109,13 +110,13 @@ class Rows {
     const geometry::SurfaceSamples& samples_;
     const geometry::PrimitiveShapes& shapes_;
     const ContactGraph& contacts_;
-    std::span<const physics::MassProperties> bodies_;
+    TableView<PrimitiveId, physics::MassProperties> bodies_;
     const geometry::SurfaceSeams& seams_;
-    std::span<const float> shell_;
+    TableView<PrimitiveId, float> shell_;
     ThreadPool& threads_;
     std::vector<Border> borders_;
-    std::vector<Node> nodes_;
-    std::vector<bool> in_shell_;
+    Table<PrimitiveId, Node> nodes_;
+    Table<PrimitiveId, bool> in_shell_;
     std::map<std::pair<std::int32_t, std::int32_t>, Evidence> at_;
 };
 
@@ -299,16 +300,16 @@ void write_row(const Inputs& in, Row& row) {
 }
 
 void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e, float* row_values) const {
-    const auto at = [](std::int32_t p) { return static_cast<std::size_t>(p); };
-    const bool a_is_small = shapes_.of[at(a)].area_m2 <= shapes_.of[at(b)].area_m2;
+    const TableView<PrimitiveId, PrimitiveShape> shape(shapes_.of);
+    const bool a_is_small = shape[a].area_m2 <= shape[b].area_m2;
     const std::int32_t small = a_is_small ? a : b, big = a_is_small ? b : a;
-    Inputs in{shapes_.of[at(small)], shapes_.of[at(big)], node_of(small), node_of(big)};
+    Inputs in{shape[small], shape[big], node_of(small), node_of(big)};
     in.border = e.border;
     in.small_is_a = a_is_small;
     in.edge = samples_.spacing_m;
     in.floor = shapes_.low[2];
-    in.small_shell = shell_[at(small)];
-    in.big_shell = shell_[at(big)];
+    in.small_shell = shell_[small];
+    in.big_shell = shell_[big];
     const std::array<std::int32_t, 2> both{std::min(a, b), std::max(a, b)};
     in.union_stands =
         margin(candidate_of(contacts_, bodies_, in_shell_, {both.begin(), both.end()}));
@@ -318,7 +319,7 @@ void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e, float* row
                              [](double x, double y) { return std::abs(x) < std::abs(y); }) -
             e.touching->normal.begin());
         const auto share = [&](std::int32_t p) {
-            return e.touching->area_m2 / std::max(contacts_.silhouette_m2[at(p)][axis], 1e-9);
+            return e.touching->area_m2 / std::max(contacts_.silhouette_m2[p][axis], 1e-9);
         };
         in.touch_share_small = share(small);
         in.touch_share_big = share(big);
@@ -326,7 +327,7 @@ void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e, float* row
         in.touch_area = e.touching->area_m2;
     }
     const auto carried = [&](const Carrying* c, std::int32_t by) {
-        return c ? c->area_m2 / std::max(contacts_.section_m2[at(by)], 1e-9) : 0;
+        return c ? c->area_m2 / std::max(contacts_.section_m2[by], 1e-9) : 0;
     };
     in.small_on_big = carried(small == a ? e.b_carries : e.a_carries, small);
     in.big_on_small = carried(small == a ? e.a_carries : e.b_carries, big);
@@ -359,8 +360,8 @@ std::span<const std::string_view> joint_feature_names() {
 
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
-                          std::span<const physics::MassProperties> bodies,
-                          const geometry::SurfaceSeams& seams, std::span<const float> shell,
+                          TableView<PrimitiveId, physics::MassProperties> bodies,
+                          const geometry::SurfaceSeams& seams, TableView<PrimitiveId, float> shell,
                           ThreadPool& threads) {
     return Rows(samples, shapes, contacts, bodies, seams, shell, threads).table();
 }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/table.h"
 #include "core/thread_pool.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
@@ -31,8 +32,8 @@ struct JointTable {
 // shell: by primitive, the probability that it is the room's.
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
-                          std::span<const physics::MassProperties> bodies,
-                          const geometry::SurfaceSeams& seams, std::span<const float> shell,
+                          TableView<PrimitiveId, physics::MassProperties> bodies,
+                          const geometry::SurfaceSeams& seams, TableView<PrimitiveId, float> shell,
                           ThreadPool& threads);
 
 }  // namespace topple::graph

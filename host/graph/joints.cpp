@@ -9,9 +9,9 @@ namespace topple::graph {
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
                                const ContactGraph& contacts,
-                               std::span<const physics::MassProperties> bodies,
-                               const geometry::SurfaceSeams& seams, std::span<const float> shell,
-                               ThreadPool& threads) {
+                               TableView<PrimitiveId, physics::MassProperties> bodies,
+                               const geometry::SurfaceSeams& seams,
+                               TableView<PrimitiveId, float> shell, ThreadPool& threads) {
     const JointTable table =
         joint_features(samples, shapes, contacts, bodies, seams, shell, threads);
     const fitted::BoostedTrees& model = fitted::joint_model(joint_feature_names());

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/table.h"
 #include "core/thread_pool.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
@@ -25,8 +26,8 @@ struct Joint {
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
                                const ContactGraph& contacts,
-                               std::span<const physics::MassProperties> bodies,
-                               const geometry::SurfaceSeams& seams, std::span<const float> shell,
-                               ThreadPool& threads);
+                               TableView<PrimitiveId, physics::MassProperties> bodies,
+                               const geometry::SurfaceSeams& seams,
+                               TableView<PrimitiveId, float> shell, ThreadPool& threads);
 
 }  // namespace topple::graph

@@ -20,22 +20,22 @@ LinkedNodes::LinkedNodes(std::int32_t primitives, const KnownLinks& links) {
     const auto count = static_cast<std::size_t>(primitives);
     UnionFind sets(count);
     for (const auto& [a, b] : links.together)
-        sets.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
-    std::vector<std::int32_t> number(count, -1);  // by a set's root
+        sets.join(PrimitiveId(a).place(), PrimitiveId(b).place());
+    std::vector<NodeId> number(count);  // by a set's root
     for (std::size_t p = 0; p < count; ++p) {
-        std::int32_t& node = number[sets.root(p)];
+        NodeId& node = number[sets.root(p)];
         if (node < 0) {
-            node = static_cast<std::int32_t>(members_.size());
+            node = members_.size();
             members_.emplace_back();
         }
         node_.push_back(node);
-        members_[static_cast<std::size_t>(node)].push_back(static_cast<std::int32_t>(p));
+        members_[node].push_back(static_cast<std::int32_t>(p));
     }
     if (links.apart.empty()) return;
     apart_.resize(members_.size());
     for (const auto& [a, b] : links.apart) {
-        apart_[static_cast<std::size_t>(node_of(a))].push_back(node_of(b));
-        apart_[static_cast<std::size_t>(node_of(b))].push_back(node_of(a));
+        apart_[node_of(a)].push_back(node_of(b));
+        apart_[node_of(b)].push_back(node_of(a));
     }
     for (auto& others : apart_) make_sorted_set(others);
 }
@@ -49,17 +49,16 @@ std::vector<Joint> LinkedNodes::joints(std::span<const Joint> of_primitives) con
     return out;
 }
 
-std::vector<bool> LinkedNodes::pinned(const std::vector<bool>& primitives) const {
-    std::vector<bool> out(members_.size(), false);
+Table<NodeId, bool> LinkedNodes::pinned(const Table<PrimitiveId, bool>& primitives) const {
+    Table<NodeId, bool> out(members_.size(), false);
     for (std::size_t p = 0; p < primitives.size(); ++p)
-        if (primitives[p]) out[static_cast<std::size_t>(node_[p])] = true;
+        if (primitives[p]) out[node_[p]] = true;
     return out;
 }
 
-std::vector<double> LinkedNodes::sums(std::span<const double> of_primitives) const {
-    std::vector<double> out(members_.size(), 0);
-    for (std::size_t p = 0; p < of_primitives.size(); ++p)
-        out[static_cast<std::size_t>(node_[p])] += of_primitives[p];
+Table<NodeId, double> LinkedNodes::sums(TableView<PrimitiveId, double> of_primitives) const {
+    Table<NodeId, double> out(members_.size(), 0);
+    for (std::size_t p = 0; p < of_primitives.size(); ++p) out[node_[p]] += of_primitives[p];
     return out;
 }
 
@@ -90,16 +89,16 @@ GroupEnergies LinkedNodes::energies(GroupEnergies of_primitives) const {
     return out;
 }
 
-std::vector<std::int32_t> LinkedNodes::of_primitives(std::span<const std::int32_t> label) const {
-    std::vector<std::int32_t> out;
-    for (const std::int32_t node : node_) out.push_back(label[static_cast<std::size_t>(node)]);
+Table<PrimitiveId, std::int32_t> LinkedNodes::of_primitives(
+    TableView<NodeId, std::int32_t> label) const {
+    Table<PrimitiveId, std::int32_t> out;
+    for (const NodeId node : node_) out.push_back(label[node]);
     return out;
 }
 
-std::optional<bool> LinkedNodes::one_object(std::int32_t a, std::int32_t b) const {
+std::optional<bool> LinkedNodes::one_object(PrimitiveId a, PrimitiveId b) const {
     if (a != b && node_of(a) == node_of(b)) return true;
-    if (!apart_.empty() &&
-        std::ranges::binary_search(apart_[static_cast<std::size_t>(node_of(a))], node_of(b)))
+    if (!apart_.empty() && std::ranges::binary_search(apart_[node_of(a)], std::int32_t{node_of(b)}))
         return false;
     return std::nullopt;
 }

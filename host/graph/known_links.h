@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/table.h"
 #include "graph/joints.h"
 #include "graph/swendsen_wang.h"
 
@@ -26,29 +27,25 @@ class LinkedNodes {
     LinkedNodes(std::int32_t primitives, const KnownLinks& links);
 
     std::int32_t size() const { return static_cast<std::int32_t>(members_.size()); }
-    std::int32_t node_of(std::int32_t primitive) const {
-        return node_[static_cast<std::size_t>(primitive)];
-    }
-    std::span<const std::int32_t> members(std::int32_t node) const {
-        return members_[static_cast<std::size_t>(node)];
-    }
+    NodeId node_of(PrimitiveId primitive) const { return node_[primitive]; }
+    std::span<const std::int32_t> members(NodeId node) const { return members_[node]; }
     // Between nodes, in their order: there may be several between two.
     std::vector<Joint> joints(std::span<const Joint> of_primitives) const;
     // Whether any primitive is.
-    std::vector<bool> pinned(const std::vector<bool>& primitives) const;
-    std::vector<double> sums(std::span<const double> of_primitives) const;
+    Table<NodeId, bool> pinned(const Table<PrimitiveId, bool>& primitives) const;
+    Table<NodeId, double> sums(TableView<PrimitiveId, double> of_primitives) const;
     // Of each node the nodes that it is kept apart from, ascending; empty where none is from any.
-    const std::vector<std::vector<std::int32_t>>& apart() const { return apart_; }
+    const Table<NodeId, std::vector<std::int32_t>>& apart() const { return apart_; }
     // Those of groups of primitives, asked for groups of nodes.
     GroupEnergies energies(GroupEnergies of_primitives) const;
-    std::vector<std::int32_t> of_primitives(std::span<const std::int32_t> label) const;
+    Table<PrimitiveId, std::int32_t> of_primitives(TableView<NodeId, std::int32_t> label) const;
     // Whether two primitives are known to be one object, or none.
-    std::optional<bool> one_object(std::int32_t a, std::int32_t b) const;
+    std::optional<bool> one_object(PrimitiveId a, PrimitiveId b) const;
 
   private:
-    std::vector<std::int32_t> node_;                  // by primitive
-    std::vector<std::vector<std::int32_t>> members_;  // by node, ascending
-    std::vector<std::vector<std::int32_t>> apart_;
+    Table<PrimitiveId, NodeId> node_;
+    Table<NodeId, std::vector<std::int32_t>> members_;  // ascending
+    Table<NodeId, std::vector<std::int32_t>> apart_;
 };
 
 }  // namespace topple::graph

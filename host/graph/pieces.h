@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "core/object_of.h"
+#include "core/table.h"
 #include "graph/joints.h"
 #include "graph/known_links.h"
 
@@ -34,18 +36,18 @@ inline constexpr double doubtful_joint = 0.6;
 // Of an object no part that holds less of the seen surface is asked for.
 inline constexpr double least_part = 0.05;
 
-// By object; surface: voxels of each primitive in which its surface was seen. Parts grow by the
-// likeliest joints first (single linkage), so that each pair of parts is judged by its likeliest.
-// What is known to be one object is one part.
-std::vector<WeakestJoint> weakest_joints(std::span<const Joint> joints, const KnownLinks& links,
-                                         std::span<const std::int32_t> object_of_primitive,
-                                         std::span<const std::uint64_t> surface,
-                                         std::size_t objects);
+// surface: voxels in which it was seen. Parts grow by the likeliest joints first (single linkage),
+// so that each pair of parts is judged by its likeliest. What is known to be one object is one
+// part.
+Table<ObjectId, WeakestJoint> weakest_joints(std::span<const Joint> joints, const KnownLinks& links,
+                                             ObjectOf object_of,
+                                             TableView<PrimitiveId, std::uint64_t> surface,
+                                             std::size_t objects);
 
-// By object. surface: voxels of each in which its surface was seen; those of none are nobody's
-// whole, as the ground, which is no thing. Objects known to be one, or none, are no question.
-std::vector<PieceOf> likely_pieces(std::span<const Joint> joints, const KnownLinks& links,
-                                   std::span<const std::int32_t> object_of_primitive,
-                                   std::span<const std::uint64_t> surface);
+// surface: the same of objects; those of none are nobody's whole, as the ground, which is no thing.
+// Objects known to be one, or none, are no question.
+Table<ObjectId, PieceOf> likely_pieces(std::span<const Joint> joints, const KnownLinks& links,
+                                       ObjectOf object_of,
+                                       TableView<ObjectId, std::uint64_t> surface);
 
 }  // namespace topple::graph

@@ -54,8 +54,7 @@ void add_corners(const Corners& corners, std::vector<BorderPoint>& points,
 
 double highest_of(const physics::Candidate& c, const ContactGraph& contacts) {
     double most = -std::numeric_limits<double>::infinity();
-    for (const std::int32_t p : c.primitives)
-        most = std::max(most, contacts.highest_m[static_cast<std::size_t>(p)]);
+    for (const std::int32_t p : c.primitives) most = std::max(most, contacts.highest_m[p]);
     return most;
 }
 

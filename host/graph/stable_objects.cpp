@@ -31,13 +31,13 @@ std::vector<Edge> edges_of(std::span<const Joint> joints) {
 }  // namespace
 
 physics::Candidate candidate_of(const ContactGraph& graph,
-                                std::span<const physics::MassProperties> bodies,
-                                const std::vector<bool>& shell,
+                                TableView<PrimitiveId, physics::MassProperties> bodies,
+                                const Table<PrimitiveId, bool>& shell,
                                 std::vector<std::int32_t> primitives) {
     physics::Candidate candidate;
     std::sort(primitives.begin(), primitives.end());
     std::vector<physics::MassProperties> parts;
-    for (const std::int32_t p : primitives) parts.push_back(bodies[static_cast<std::size_t>(p)]);
+    for (const std::int32_t p : primitives) parts.push_back(bodies[p]);
     candidate.body = physics::combine(parts);
     std::vector<BorderPoint> points;
     candidate.support_height_m = std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ physics::Candidate candidate_of(const ContactGraph& graph,
     for (const std::int32_t p : primitives) {
         if (points.empty()) break;
         for (const Leaning& l : graph.leanings_of(p)) {
-            if (!shell[static_cast<std::size_t>(l.against)]) continue;
+            if (!shell[l.against]) continue;
             if (l.height_m < candidate.body.center[2]) continue;
             if (std::binary_search(primitives.begin(), primitives.end(), l.against)) continue;
             for (const auto& at : l.outline)
@@ -74,9 +74,9 @@ double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> prim
     std::vector<Clearance> under;
     double lowest = std::numeric_limits<double>::infinity(), area = 0;
     for (const std::int32_t p : primitives) {
-        lowest = std::min(lowest, graph.lowest_m[static_cast<std::size_t>(p)]);
-        area += graph.silhouette_m2[static_cast<std::size_t>(p)][2];
-        for (const Clearance& c : graph.clearances[static_cast<std::size_t>(p)]) {
+        lowest = std::min(lowest, graph.lowest_m[p]);
+        area += graph.silhouette_m2[p][2];
+        for (const Clearance& c : graph.clearances[p]) {
             if (std::find(primitives.begin(), primitives.end(), c.below) == primitives.end())
                 under.push_back(c);
         }
@@ -105,7 +105,7 @@ double standing_cost(const physics::Candidate& c, double noise_m) {
 }
 
 Grouping group_primitives(const ContactGraph& graph,
-                          std::span<const physics::MassProperties> bodies,
+                          TableView<PrimitiveId, physics::MassProperties> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads) {
     const std::vector<Joint> biased = biased_joints(joints, shell.pinned, options.joint_bias);
@@ -150,9 +150,7 @@ std::vector<double> pair_probabilities(const ContactGraph& graph, std::span<cons
                                      [](const Joint& j) { return std::pair(j.a, j.b); });
         const bool known = at != joints.end() && at->a == pair.a && at->b == pair.b;
         // All of the room is one.
-        const auto room = [&](std::int32_t p) {
-            return fitted::probability(shell.log_odds[static_cast<std::size_t>(p)]);
-        };
+        const auto room = [&](std::int32_t p) { return fitted::probability(shell.log_odds[p]); };
         const double both = room(pair.a) * room(pair.b);
         const double joint = known ? fitted::probability(at->log_odds) : 0;
         const std::optional<bool> one = nodes.one_object(pair.a, pair.b);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/table.h"
 #include "graph/contact_graph.h"
 #include "graph/joints.h"
 #include "graph/known_links.h"
@@ -16,8 +17,8 @@ namespace topple::graph {
 
 // How surely primitives are the room's.
 struct ShellOdds {
-    std::vector<double> log_odds;  // by primitive
-    std::vector<bool> pinned;      // taken for the room's whatever touches them
+    Table<PrimitiveId, double> log_odds;
+    Table<PrimitiveId, bool> pinned;  // taken for the room's whatever touches them
 };
 
 struct GroupingOptions {
@@ -32,9 +33,9 @@ struct GroupingOptions {
 };
 
 struct Grouping {
-    std::vector<std::int32_t> group;  // of each primitive; -1: fixed to the ground
-    // By group: share of the sampler's chains that found it, but for a tenth of its primitives.
-    std::vector<double> agreement;
+    Table<PrimitiveId, std::int32_t> group;  // -1: fixed to the ground
+    // Share of the sampler's chains that found it, but for a tenth of its primitives.
+    Table<GroupId, double> agreement;
     std::vector<double> energy_curve;  // best energy after each step of the annealing
 };
 
@@ -42,8 +43,8 @@ struct Grouping {
 // what is not part of it. What something below carries is held as well where it touches the room's
 // shell at a height no less than its centre of mass: a ladder leans on its wall.
 physics::Candidate candidate_of(const ContactGraph& graph,
-                                std::span<const physics::MassProperties> bodies,
-                                const std::vector<bool>& shell,
+                                TableView<PrimitiveId, physics::MassProperties> bodies,
+                                const Table<PrimitiveId, bool>& shell,
                                 std::vector<std::int32_t> primitives);
 
 // Height that the body falls before it meets something, metres, where nothing holds it up.
@@ -57,7 +58,7 @@ double standing_cost(const physics::Candidate& candidate, double noise_m);
 // Minimises Eq. 8 by Swendsen-Wang cuts with q = P(joint), from the greedy contraction of the
 // joints on, over the groupings that keep to the links that are known. joints: sorted by (a, b).
 Grouping group_primitives(const ContactGraph& graph,
-                          std::span<const physics::MassProperties> bodies,
+                          TableView<PrimitiveId, physics::MassProperties> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads);
 

@@ -26,30 +26,26 @@ struct Evidence {
 
 // By (supporter, supported).
 std::map<Pair, Evidence> gather(const ContactGraph& contacts,
-                                std::span<const double> pair_probability,
-                                std::span<const std::int32_t> object_of_primitive,
-                                std::span<const Carried> objects,
-                                const std::vector<std::vector<Underside>>& columns) {
-    const auto object = [&](std::int32_t p) {
-        return object_of_primitive[static_cast<std::size_t>(p)];
-    };
+                                std::span<const double> pair_probability, ObjectOf object_of,
+                                TableView<ObjectId, Carried> objects,
+                                const Table<ObjectId, std::vector<Underside>>& columns) {
     std::map<Pair, Evidence> found;
     for (const Carrying& c : contacts.carryings) {
         if (c.supporter < 0) continue;
-        const Pair pair{object(c.supporter), object(c.supported)};
+        const Pair pair{object_of(c.supporter), object_of(c.supported)};
         // The ground carries, and nothing carries it, though fragments of it may lie on things.
-        if (pair.first != pair.second && !objects[static_cast<std::size_t>(pair.second)].grounded)
+        if (pair.first != pair.second && !objects[pair.second].grounded)
             found[pair].contact += c.area_m2 / (contacts.voxel_m * contacts.voxel_m);
     }
     for (std::size_t o = 0; o < columns.size(); ++o) {
         if (objects[o].grounded) continue;
         for (const Underside& u : columns[o]) {
             if (u.gap >= 0 && u.gap <= noise_gap && u.primitive >= 0)
-                ++found[{object(u.primitive), static_cast<std::int32_t>(o)}].near;
+                ++found[{object_of(u.primitive), static_cast<std::int32_t>(o)}].near;
         }
     }
     for (std::size_t n = 0; n < contacts.pairs.size(); ++n) {
-        const std::int32_t a = object(contacts.pairs[n].a), b = object(contacts.pairs[n].b);
+        const std::int32_t a = object_of(contacts.pairs[n].a), b = object_of(contacts.pairs[n].b);
         for (const Pair& pair : {Pair{a, b}, Pair{b, a}}) {
             const auto at = found.find(pair);
             if (at != found.end())
@@ -72,19 +68,18 @@ double probability(const Evidence& e, double supporter_kg, double supported_kg) 
 // Objects may carry one another two and two, as what leans together does, but a longer round holds
 // nothing up: of the supports that close one, the likelier stay.
 void break_rounds(std::vector<Support>& supports, std::size_t objects) {
-    const auto id = [](std::int32_t o) { return static_cast<std::size_t>(o); };
     std::set<Pair> stated;
     for (const Support& s : supports) stated.emplace(s.supporter, s.supported);
     const auto mutual = [&](const Support& s) {
         return stated.contains({s.supported, s.supporter});
     };
     // What is not on any round goes, from the ground up (Kahn).
-    std::vector<std::vector<std::size_t>> carries(objects);
-    std::vector<int> carriers(objects, 0);
+    Table<ObjectId, std::vector<std::size_t>> carries(objects);
+    Table<ObjectId, int> carriers(objects, 0);
     for (const Support& s : supports) {
         if (mutual(s)) continue;
-        carries[id(s.supporter)].push_back(id(s.supported));
-        ++carriers[id(s.supported)];
+        carries[s.supporter].push_back(ObjectId(s.supported).place());
+        ++carriers[s.supported];
     }
     std::vector<std::size_t> free;
     for (std::size_t o = 0; o < objects; ++o)
@@ -98,7 +93,7 @@ void break_rounds(std::vector<Support>& supports, std::size_t objects) {
     std::vector<std::size_t> order;
     for (std::size_t n = 0; n < supports.size(); ++n) {
         const Support& s = supports[n];
-        if (carriers[id(s.supporter)] > 0 && carriers[id(s.supported)] > 0 && !mutual(s))
+        if (carriers[s.supporter] > 0 && carriers[s.supported] > 0 && !mutual(s))
             order.push_back(n);
     }
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
@@ -107,7 +102,8 @@ void break_rounds(std::vector<Support>& supports, std::size_t objects) {
     for (auto& list : carries) list.clear();
     std::vector<std::size_t> dropped;
     for (const std::size_t n : order) {
-        const std::size_t from = id(supports[n].supporter), to = id(supports[n].supported);
+        const std::size_t from = ObjectId(supports[n].supporter).place(),
+                          to = ObjectId(supports[n].supported).place();
         std::vector<std::size_t> reached{to};
         std::vector<bool> seen(objects);
         for (std::size_t at = 0; at < reached.size() && !seen[from]; ++at) {
@@ -128,23 +124,20 @@ void break_rounds(std::vector<Support>& supports, std::size_t objects) {
 }  // namespace
 
 std::vector<Support> find_supports(const ContactGraph& contacts,
-                                   std::span<const double> pair_probability,
-                                   std::span<const std::int32_t> object_of_primitive,
-                                   std::span<const Carried> objects,
-                                   const std::vector<std::vector<Underside>>& columns) {
+                                   std::span<const double> pair_probability, ObjectOf object_of,
+                                   TableView<ObjectId, Carried> objects,
+                                   const Table<ObjectId, std::vector<Underside>>& columns) {
     std::vector<Support> all;
-    std::vector<double> likeliest(objects.size(), 0);
-    for (const auto& [pair, e] :
-         gather(contacts, pair_probability, object_of_primitive, objects, columns)) {
-        const auto supported = static_cast<std::size_t>(pair.second);
-        const double p = probability(e, objects[static_cast<std::size_t>(pair.first)].mass_kg,
-                                     objects[supported].mass_kg);
+    Table<ObjectId, double> likeliest(objects.size(), 0);
+    for (const auto& [pair, e] : gather(contacts, pair_probability, object_of, objects, columns)) {
+        const auto& [supporter, supported] = pair;
+        const double p = probability(e, objects[supporter].mass_kg, objects[supported].mass_kg);
         const double area = (e.contact > 0 ? e.contact : e.near) * contacts.voxel_m;
-        all.push_back({pair.first, pair.second, area * contacts.voxel_m, p});
+        all.push_back({supporter, supported, area * contacts.voxel_m, p});
         likeliest[supported] = std::max(likeliest[supported], p);
     }
     std::erase_if(all, [&](const Support& s) {
-        const double best = likeliest[static_cast<std::size_t>(s.supported)];
+        const double best = likeliest[s.supported];
         return s.probability <= 0.5 && (s.probability < best || best <= least_alone);
     });
     break_rounds(all, objects.size());

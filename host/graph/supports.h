@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "core/object_of.h"
+#include "core/table.h"
 #include "graph/contact_graph.h"
 #include "graph/undersides.h"
 #include "topple/scene.h"
@@ -33,9 +35,8 @@ struct Carried {
 //   pair_probability  of each of the contacts' pairs, that both are one
 //   columns           undersides of each object
 std::vector<Support> find_supports(const ContactGraph& contacts,
-                                   std::span<const double> pair_probability,
-                                   std::span<const std::int32_t> object_of_primitive,
-                                   std::span<const Carried> objects,
-                                   const std::vector<std::vector<Underside>>& columns);
+                                   std::span<const double> pair_probability, ObjectOf object_of,
+                                   TableView<ObjectId, Carried> objects,
+                                   const Table<ObjectId, std::vector<Underside>>& columns);
 
 }  // namespace topple::graph

@@ -114,14 +114,14 @@ std::vector<double> best_of(const std::vector<Outcome>& chains) {
 // Of each group, whether another labelling of the nodes holds it, but for a tenth.
 std::vector<bool> found_again(const std::vector<std::int32_t>& label, std::size_t groups,
                               const std::vector<std::int32_t>& other) {
-    std::vector<std::map<std::int32_t, std::size_t>> shared(groups);
+    Table<GroupId, std::map<std::int32_t, std::size_t>> shared(groups);
     std::map<std::int32_t, std::size_t> size;
-    std::vector<std::size_t> own(groups, 0);
+    Table<GroupId, std::size_t> own(groups, 0);
     for (std::size_t n = 0; n < label.size(); ++n) {
         ++size[other[n]];
         if (label[n] < 0) continue;
-        ++shared[static_cast<std::size_t>(label[n])][other[n]];
-        ++own[static_cast<std::size_t>(label[n])];
+        ++shared[label[n]][other[n]];
+        ++own[label[n]];
     }
     std::vector<bool> out(groups);
     for (std::size_t g = 0; g < groups; ++g) {
@@ -166,7 +166,7 @@ Partition combined(const std::vector<Outcome>& chains, std::size_t edges) {
 }  // namespace
 
 Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
-                             const std::vector<bool>& pinned, const GroupEnergies& energies,
+                             const Table<NodeId, bool>& pinned, const GroupEnergies& energies,
                              const SwendsenWangOptions& options) {
     if (nodes == 0) return {};
     const CutProblem problem(nodes, edges, pinned, options.apart);

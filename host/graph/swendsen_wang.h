@@ -6,8 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "core/table.h"
+
 // Swendsen-Wang cuts over partitions of a graph (Barbu and Zhu 2005; paper, 4.3, Algorithm 1).
 namespace topple::graph {
+
+using NodeId = Id<struct Nodes>;
+using GroupId = Id<struct Groups>;
 
 struct Edge {
     std::int32_t a = -1, b = -1;
@@ -46,20 +51,20 @@ struct SwendsenWangOptions {
     double time_limit_s = 0;
     // The partition to start from: nodes of one group have one label, pinned nodes share theirs.
     // Empty: each node on its own.
-    std::vector<std::int32_t> start;
+    Table<NodeId, std::int32_t> start;
     // Of each node those that no group may hold beside it; empty: there are none. Symmetric, not of
     // two pinned nodes, and `start` keeps to it. Flips that would break it are not proposed.
-    std::vector<std::vector<std::int32_t>> apart;
+    Table<NodeId, std::vector<std::int32_t>> apart;
     std::function<bool()> cancelled;  // polled between steps by the caller's thread; may be empty
 };
 
 struct Partition {
-    std::vector<std::int32_t> label;  // group of each node, numbered by first appearance;
-                                      // the pinned group, where there is one, is -1
+    Table<NodeId, std::int32_t> label;  // its group, numbered by first appearance;
+                                        // the pinned group, where there is one, is -1
     double energy = 0;
-    // By group: share of the chains whose own best partition holds it, to nine tenths of the nodes
+    // Share of the chains whose own best partition holds it, to nine tenths of the nodes
     // that either holds. Groups that few chains found are not sure.
-    std::vector<double> agreement;
+    Table<GroupId, double> agreement;
     std::vector<double> joined;  // per edge: share of sampled states with both ends in one group
     std::vector<double> best_energy_curve;  // after every step of the annealing, over all chains
     std::uint64_t energies_evaluated = 0;   // groups asked for; with several threads it may differ
@@ -72,7 +77,7 @@ struct Partition {
 // group; it is accepted with the probability of Barbu and Zhu's Theorem 1 (paper, Eq. 11).
 // Deterministic.
 Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
-                             const std::vector<bool>& pinned, const GroupEnergies& energies,
+                             const Table<NodeId, bool>& pinned, const GroupEnergies& energies,
                              const SwendsenWangOptions& options);
 
 }  // namespace topple::graph

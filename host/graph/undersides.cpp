@@ -3,21 +3,16 @@
 
 namespace topple::graph {
 
-std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
-                                               std::span<const std::int32_t> object_of_primitive,
-                                               std::size_t objects) {
-    std::vector<std::vector<Underside>> out(objects);
-    const auto object = [&](std::size_t n) {
-        const std::int32_t p = cells.primitive[n];
-        return p < 0 ? -1 : object_of_primitive[static_cast<std::size_t>(p)];
-    };
+Table<ObjectId, std::vector<Underside>> undersides(const SolidCells& cells, ObjectOf object_of,
+                                                   std::size_t objects) {
+    Table<ObjectId, std::vector<Underside>> out(objects);
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t own = object(n);
+        const ObjectId own = object_of(cells.primitive[n]);
         if (own < 0) continue;
         // Cells are sorted by (i, j, k): what is below comes right before.
         const bool below = n > 0 && cells.i[n - 1] == cells.i[n] && cells.j[n - 1] == cells.j[n];
-        if (below && object(n - 1) == own) continue;
-        std::vector<Underside>& columns = out[static_cast<std::size_t>(own)];
+        if (below && object_of(cells.primitive[n - 1]) == own) continue;
+        std::vector<Underside>& columns = out[own];
         // Only the lowest of each column.
         if (!columns.empty() && columns.back().i == cells.i[n] && columns.back().j == cells.j[n])
             continue;

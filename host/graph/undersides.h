@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "core/object_of.h"
 #include "core/solid_cells.h"
+#include "core/table.h"
 
 namespace topple::graph {
 
@@ -18,8 +19,7 @@ struct Underside {
     std::int32_t unseen;     // cells right below it that nobody saw into
 };
 // By object, sorted by (i, j, k).
-std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
-                                               std::span<const std::int32_t> object_of_primitive,
-                                               std::size_t objects);
+Table<ObjectId, std::vector<Underside>> undersides(const SolidCells& cells, ObjectOf object_of,
+                                                   std::size_t objects);
 
 }  // namespace topple::graph
