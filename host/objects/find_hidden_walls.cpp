@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/table.h"
+
 namespace topple {
 namespace {
 
@@ -212,12 +214,12 @@ class Wall {
 
     template <class Use>
     void for_each(std::int32_t primitive, const Use& use) const {
-        const auto [first, last] = range_[static_cast<std::size_t>(primitive)];
+        const auto [first, last] = range_[primitive];
         for (std::size_t n = first; n < last; ++n) use(n);
     }
 
     const SurfaceSamples& s_;
-    std::span<const std::pair<std::size_t, std::size_t>> range_;
+    TableView<PrimitiveId, std::pair<std::size_t, std::size_t>> range_;
     std::array<double, 2> normal_, along_;
     double offset_m_ = 0, top_m_ = -infinity;
     std::vector<double> seen_;  // places along it of what was seen of it

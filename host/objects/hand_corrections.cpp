@@ -45,18 +45,10 @@ void renumber_groups(graph::Grouping& grouping) {
     std::vector<double> agreement;
     for (std::int32_t& g : grouping.group) {
         const auto [at, fresh] = number.try_emplace(g, static_cast<std::int32_t>(agreement.size()));
-        if (fresh) agreement.push_back(grouping.agreement[static_cast<std::size_t>(g)]);
+        if (fresh) agreement.push_back(grouping.agreement[g]);
         g = at->second;
     }
     grouping.agreement = std::move(agreement);
-}
-
-template <class T>
-T& entry(std::vector<T>& list, std::int32_t at) {
-    return list[static_cast<std::size_t>(at)];
-}
-std::vector<bool>::reference entry(std::vector<bool>& list, std::int32_t at) {
-    return list[static_cast<std::size_t>(at)];
 }
 
 }  // namespace
@@ -124,11 +116,10 @@ void HandCorrections::find_links() {
 void HandCorrections::find_contradictions() const {
     UnionFind one(static_cast<std::size_t>(primitives_));
     for (const auto& [a, b] : links_.together)
-        one.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+        one.join(PrimitiveId(a).place(), PrimitiveId(b).place());
     for (std::size_t n = 0; n < links_.apart.size(); ++n) {
         const auto& [a, b] = links_.apart[n];
-        if (one.root(static_cast<std::size_t>(a)) != one.root(static_cast<std::size_t>(b)))
-            continue;
+        if (one.root(PrimitiveId(a).place()) != one.root(PrimitiveId(b).place())) continue;
         std::string others;
         for (const std::size_t m : way_between(links_, together_by_, a, b))
             others.append(others.empty() ? "" : " and ").append(with_kind(m));
@@ -147,8 +138,8 @@ void HandCorrections::keep_apart(const SolidScene& solids, graph::ShellOdds& she
     const auto room = [&](std::int32_t node) {
         std::optional<Sure> most;
         for (const std::int32_t p : nodes.members(node)) {
-            if (!entry(shell.pinned, p)) continue;
-            const Sure own{solids.role(p) == Role::floor, entry(shell.log_odds, p)};
+            if (!shell.pinned[p]) continue;
+            const Sure own{solids.role(p) == Role::floor, shell.log_odds[p]};
             most = std::max(most.value_or(own), own);
         }
         return most;
@@ -158,17 +149,16 @@ void HandCorrections::keep_apart(const SolidScene& solids, graph::ShellOdds& she
         if (!by_a && !by_b) continue;
         const bool first = !by_a || (by_b && *by_a <= *by_b);
         for (const std::int32_t p : nodes.members(nodes.node_of(first ? a : b))) {
-            entry(shell.pinned, p) = false;
-            entry(shell.log_odds, p) = std::min(entry(shell.log_odds, p), -surely_log_odds);
+            shell.pinned[p] = false;
+            shell.log_odds[p] = std::min(shell.log_odds[p], -surely_log_odds);
             things_.push_back(p);
         }
     }
 }
 
-void HandCorrections::renumber(std::span<const std::int32_t> number) {
-    const auto now = [&](std::int32_t p) { return number[static_cast<std::size_t>(p)]; };
+void HandCorrections::renumber(TableView<PrimitiveId, std::int32_t> number) {
     const auto renumbered = [&](std::vector<std::int32_t>& list) {
-        for (std::int32_t& p : list) p = now(p);
+        for (std::int32_t& p : list) p = number[p];
         std::erase(list, -1);
     };
     for (LocatedCorrection& l : located_) {
@@ -179,7 +169,7 @@ void HandCorrections::renumber(std::span<const std::int32_t> number) {
     const auto links = [&](auto& pairs, std::vector<std::size_t>& by) {
         std::size_t kept = 0;
         for (std::size_t n = 0; n < pairs.size(); ++n) {
-            const std::pair pair{now(pairs[n].first), now(pairs[n].second)};
+            const std::pair pair{number[pairs[n].first], number[pairs[n].second]};
             if (pair.first < 0 || pair.second < 0) continue;
             pairs[kept] = pair;
             by[kept++] = by[n];
@@ -199,9 +189,9 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
         if (applied_[n].correction.kind != Kind::not_there) continue;
         for (const std::int32_t at : located_[n].at) {
             gone.try_emplace(at, n);
-            if (entry(grouping.group, at) < 0) continue;
+            if (grouping.group[at] < 0) continue;
             for (std::int32_t p = 0; p < primitives_; ++p)
-                if (entry(grouping.group, p) == entry(grouping.group, at)) gone.try_emplace(p, n);
+                if (grouping.group[p] == grouping.group[at]) gone.try_emplace(p, n);
         }
     }
     if (gone.empty()) return std::nullopt;
@@ -217,19 +207,20 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
             continue;
         remark(n, "what is there is taken away by " + numbered(gone.at(at.front())), false);
     }
-    std::vector<bool> kept(parts.model.size(), true);
-    for (const auto& [p, n] : gone) entry(kept, p) = false;
+    Table<PrimitiveId, bool> kept(parts.model.size(), true);
+    for (const auto& [p, n] : gone) kept[p] = false;
     TakenAway out = take_away(*parts.solids, kept);
     parts.solids = out.solids;
+    const TableView<PrimitiveId, std::int32_t> number(out.number);
     parts.model = left_of(out.number, parts.model);
     parts.shell_log_odds = left_of(out.number, parts.shell_log_odds);
     parts.points = left_of(out.number, parts.points);
     // Numbers rise as before, so the samples stay sorted by them.
     parts.samples = geometry::samples_where(parts.samples, [&](std::size_t n) {
-        return parts.samples.primitive[n] < 0 || entry(kept, parts.samples.primitive[n]);
+        return parts.samples.primitive[n] < 0 || kept[parts.samples.primitive[n]];
     });
     for (std::int32_t& p : parts.samples.primitive)
-        if (p >= 0) p = entry(out.number, p);
+        if (p >= 0) p = number[p];
     // Joints are found of these, and have been.
     parts.seams = {};
     grouping.group = left_of(out.number, grouping.group);
@@ -237,20 +228,18 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
     shell.log_odds = left_of(out.number, shell.log_odds);
     shell.pinned = left_of(out.number, shell.pinned);
     for (graph::Joint& j : joints) {
-        j.a = entry(out.number, j.a);
-        j.b = entry(out.number, j.b);
+        j.a = number[j.a];
+        j.b = number[j.b];
     }
     std::erase_if(joints, [](const graph::Joint& j) { return j.a < 0 || j.b < 0; });
-    renumber(out.number);
+    renumber(number);
     primitives_ = static_cast<std::int32_t>(parts.model.size());
     return out;
 }
 
 std::optional<std::size_t> HandCorrections::keeper_from_room(const graph::Grouping& grouping,
                                                              std::int32_t group) const {
-    const auto group_of = [&](std::int32_t p) {
-        return grouping.group[static_cast<std::size_t>(p)];
-    };
+    const auto group_of = [&](PrimitiveId p) { return grouping.group[p]; };
     for (std::size_t n = 0; n < links_.apart.size(); ++n) {
         const auto& [a, b] = links_.apart[n];
         if ((group_of(a) == group && group_of(b) < 0) || (group_of(b) == group && group_of(a) < 0))
@@ -264,7 +253,7 @@ void HandCorrections::fix(SolidParts& parts, graph::Grouping& grouping, graph::S
     for (std::size_t n = 0; n < applied_.size(); ++n) {
         if (applied_[n].correction.kind != Kind::fixed) continue;
         for (const std::int32_t p : located_[n].at) {
-            const std::int32_t g = entry(grouping.group, p);
+            const std::int32_t g = grouping.group[p];
             if (g < 0) continue;
             if (const auto keeper = keeper_from_room(grouping, g))
                 remark(n, numbered(*keeper) + " keeps a part of its object apart from the building",
@@ -273,22 +262,22 @@ void HandCorrections::fix(SolidParts& parts, graph::Grouping& grouping, graph::S
                 fixed.insert(g);
         }
     }
-    std::vector<Role> roles;
+    Table<PrimitiveId, Role> roles;
     for (std::int32_t p = 0; p < primitives_; ++p) roles.push_back(parts.solids->role(p));
-    const std::vector<Role> before = roles;
+    const Table<PrimitiveId, Role> before = roles;
     for (const std::int32_t p : things_)
-        if (entry(grouping.group, p) >= 0) entry(roles, p) = Role::none;
+        if (grouping.group[p] >= 0) roles[p] = Role::none;
     for (std::int32_t p = 0; p < primitives_; ++p) {
-        if (!fixed.contains(entry(grouping.group, p))) continue;
-        entry(grouping.group, p) = -1;
-        entry(shell.pinned, p) = true;
-        entry(shell.log_odds, p) = std::max(entry(shell.log_odds, p), surely_log_odds);
-        if (entry(roles, p) == Role::none) entry(roles, p) = Role::fixture;
+        if (!fixed.contains(grouping.group[p])) continue;
+        grouping.group[p] = -1;
+        shell.pinned[p] = true;
+        shell.log_odds[p] = std::max(shell.log_odds[p], surely_log_odds);
+        if (roles[p] == Role::none) roles[p] = Role::fixture;
     }
     if (!fixed.empty()) renumber_groups(grouping);
     for (std::size_t n = 0; n < links_.apart.size(); ++n) {
         const auto& [a, b] = links_.apart[n];
-        if (entry(grouping.group, a) < 0 && entry(grouping.group, b) < 0 &&
+        if (grouping.group[a] < 0 && grouping.group[b] < 0 &&
             applied_[apart_by_[n]].outcome.empty())
             remark(apart_by_[n], "both are fixed to the building by other corrections", true);
     }
@@ -298,16 +287,15 @@ void HandCorrections::fix(SolidParts& parts, graph::Grouping& grouping, graph::S
                                                parts.solids->strays(), parts.solids->boundary());
 }
 
-std::vector<KnownMass> HandCorrections::masses(std::span<const std::int32_t> object_of_primitive,
-                                               std::size_t objects, std::int32_t grounded) {
-    std::vector<KnownMass> out(objects);
-    std::vector<std::optional<std::size_t>> wall_by(objects), mass_by(objects);
+Table<ObjectId, KnownMass> HandCorrections::masses(ObjectOf object_of, std::size_t objects,
+                                                   std::int32_t grounded) {
+    Table<ObjectId, KnownMass> out(objects);
+    Table<ObjectId, std::optional<std::size_t>> wall_by(objects), mass_by(objects);
     for (std::size_t n = 0; n < applied_.size(); ++n) {
         const Correction& c = applied_[n].correction;
         if (c.kind != Kind::hollow && c.kind != Kind::mass) continue;
         std::set<std::int32_t> about;
-        for (const std::int32_t p : located_[n].at)
-            about.insert(object_of_primitive[static_cast<std::size_t>(p)]);
+        for (const std::int32_t p : located_[n].at) about.insert(object_of(p));
         if (c.kind == Kind::mass && about.size() > 1)
             remark(n,
                    "its spots lie in " + std::to_string(about.size()) +
@@ -319,8 +307,8 @@ std::vector<KnownMass> HandCorrections::masses(std::span<const std::int32_t> obj
                 continue;
             }
             const bool hollow = c.kind == Kind::hollow;
-            auto& by = entry(hollow ? wall_by : mass_by, o);
-            std::optional<double>& value = hollow ? entry(out, o).wall_m : entry(out, o).mass_kg;
+            auto& by = (hollow ? wall_by : mass_by)[o];
+            std::optional<double>& value = hollow ? out[o].wall_m : out[o].mass_kg;
             const double own = hollow ? c.wall_m : c.mass_kg;
             if (by && *value != own) {
                 remark(n, numbered(*by) + " says otherwise of object " + std::to_string(o), false);
@@ -333,30 +321,27 @@ std::vector<KnownMass> HandCorrections::masses(std::span<const std::int32_t> obj
     return out;
 }
 
-HandCorrections::Told HandCorrections::tell(std::span<const std::int32_t> object_of_primitive,
-                                            std::size_t objects, std::int32_t grounded) {
+HandCorrections::Told HandCorrections::tell(ObjectOf object_of, std::size_t objects,
+                                            std::int32_t grounded) {
     Told out;
     out.name.resize(objects);
     out.corrected.resize(objects);
-    const auto object = [&](std::int32_t p) {
-        return object_of_primitive[static_cast<std::size_t>(p)];
-    };
-    std::vector<std::optional<std::size_t>> named_by(objects);
+    Table<ObjectId, std::optional<std::size_t>> named_by(objects);
     std::map<std::int32_t, std::size_t> part_named_by;
     for (std::size_t n = 0; n < applied_.size(); ++n) {
         AppliedCorrection& applied = applied_[n];
         std::set<std::int32_t> about;
         // Of two that are apart it is about the one that was spoken of.
-        for (const std::int32_t p : located_[n].at) about.insert(object(p));
+        for (const std::int32_t p : located_[n].at) about.insert(object_of(p));
         applied.objects.assign(about.begin(), about.end());
         if (applied.correction.kind == Kind::name) {
             const std::string& name = applied.correction.name;
             for (const std::int32_t p : located_[n].at) {
-                const bool part = object(p) == grounded;
-                std::string& to = part ? out.name_of_part[p] : entry(out.name, object(p));
+                const bool part = object_of(p) == grounded;
+                std::string& to = part ? out.name_of_part[p] : out.name[object_of(p)];
                 if (!to.empty() && to != name) {
                     remark(n,
-                           numbered(part ? part_named_by.at(p) : *entry(named_by, object(p))) +
+                           numbered(part ? part_named_by.at(p) : *named_by[object_of(p)]) +
                                " names it otherwise",
                            false);
                     continue;
@@ -364,13 +349,13 @@ HandCorrections::Told HandCorrections::tell(std::span<const std::int32_t> object
                 if (part)
                     part_named_by.try_emplace(p, n);
                 else
-                    entry(named_by, object(p)) = entry(named_by, object(p)).value_or(n);
+                    named_by[object_of(p)] = named_by[object_of(p)].value_or(n);
                 to = name;
             }
         }
         if (!applied.held) continue;
         for (const std::int32_t o : applied.objects)
-            entry(out.corrected, o).push_back(static_cast<std::int32_t>(n + 1));
+            out.corrected[o].push_back(static_cast<std::int32_t>(n + 1));
         applied.outcome = applied.outcome.empty() ? "held" : "held, but " + applied.outcome;
     }
     out.corrections = std::move(applied_);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/object_of.h"
 #include "graph/known_links.h"
 #include "graph/stable_objects.h"
 #include "objects/located_corrections.h"
@@ -40,19 +41,18 @@ class HandCorrections {
                                        graph::ShellOdds& shell, std::vector<graph::Joint>& joints);
     // Also gives parts that are of the room, or no longer so, their role.
     void fix(SolidParts& parts, graph::Grouping& grouping, graph::ShellOdds& shell);
-    // By object; grounded: the room, which has no mass, -1: none.
-    std::vector<KnownMass> masses(std::span<const std::int32_t> object_of_primitive,
-                                  std::size_t objects, std::int32_t grounded);
+    // grounded: the room, which has no mass, -1: none.
+    Table<ObjectId, KnownMass> masses(ObjectOf object_of, std::size_t objects,
+                                      std::int32_t grounded);
 
     // What became of them all, and of whom they speak.
     struct Told {
         std::vector<AppliedCorrection> corrections;
-        std::vector<std::string> name;                     // by object
-        std::vector<std::vector<std::int32_t>> corrected;  // by object: numbers
-        std::map<std::int32_t, std::string> name_of_part;  // by primitive of the room
+        Table<ObjectId, std::string> name;
+        Table<ObjectId, std::vector<std::int32_t>> corrected;  // numbers
+        std::map<std::int32_t, std::string> name_of_part;      // by primitive of the room
     };
-    Told tell(std::span<const std::int32_t> object_of_primitive, std::size_t objects,
-              std::int32_t grounded);
+    Told tell(ObjectOf object_of, std::size_t objects, std::int32_t grounded);
 
   private:
     using Kind = Correction::Kind;
@@ -63,7 +63,7 @@ class HandCorrections {
     std::string with_kind(std::size_t n) const;
     // held: whether it holds all the same.
     void remark(std::size_t n, const std::string& what, bool held);
-    void renumber(std::span<const std::int32_t> number);
+    void renumber(TableView<PrimitiveId, std::int32_t> number);
     // The correction that keeps a part of the group apart from the room.
     std::optional<std::size_t> keeper_from_room(const graph::Grouping& grouping,
                                                 std::int32_t group) const;

@@ -19,41 +19,34 @@ bool is_slim(const Body& object) {
 
 }  // namespace
 
-std::vector<std::int32_t> find_legs(const SolidScene& solids,
-                                    std::span<const std::int32_t> object_of_primitive,
-                                    std::span<const Body> objects) {
+std::vector<std::int32_t> find_legs(const SolidScene& solids, ObjectOf object_of,
+                                    TableView<ObjectId, Body> objects) {
     const SolidCells& cells = solids.cells();
-    const auto object = [&](std::size_t n) {
-        const std::int32_t p = cells.primitive[n];
-        return p < 0 ? -1 : object_of_primitive[static_cast<std::size_t>(p)];
-    };
-    std::vector<bool> slim_ones;
+    Table<ObjectId, bool> slim_ones;
     for (const Body& o : objects) slim_ones.push_back(is_slim(o));
     // Columns of each slim object, and how many of them have what next above it.
-    std::vector<std::int32_t> columns(objects.size());
+    Table<ObjectId, std::int32_t> columns(objects.size());
     std::map<std::int32_t, std::map<std::int32_t, std::int32_t>> below;
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t o = object(n);
-        if (o < 0 || !slim_ones[static_cast<std::size_t>(o)]) continue;
+        const ObjectId o = object_of(cells.primitive[n]);
+        if (o < 0 || !slim_ones[o]) continue;
         const bool goes_on =
             n + 1 < cells.size() && cells.i[n + 1] == cells.i[n] && cells.j[n + 1] == cells.j[n];
-        const std::int32_t next = goes_on ? object(n + 1) : -1;
+        const ObjectId next = goes_on ? object_of(cells.primitive[n + 1]) : ObjectId();
         if (next == o) continue;  // its column ends further up
-        ++columns[static_cast<std::size_t>(o)];
+        ++columns[o];
         if (next < 0) continue;
-        const Body &leg = objects[static_cast<std::size_t>(o)],
-                   &top = objects[static_cast<std::size_t>(next)];
+        const Body &leg = objects[o], &top = objects[next];
         if (top.grounded || top.seen_enough() ||
             top.candidate.body.mass_kg <= leg.candidate.body.mass_kg)
             continue;
         const double underside = cells.k[n + 1] * cells.voxel_m - leg.lowest_m;
         if (leg.highest_m - leg.lowest_m >= most_of_the_way * underside) ++below[o][next];
     }
-    std::vector<std::int32_t> out(objects.size(), -1);
+    Table<ObjectId, std::int32_t> out(objects.size(), -1);
     for (const auto& [o, tops] : below) {
         for (const auto& [top, count] : tops)
-            if (2 * count >= columns[static_cast<std::size_t>(o)])
-                out[static_cast<std::size_t>(o)] = top;
+            if (2 * count >= columns[o]) out[o] = top;
     }
     return out;
 }

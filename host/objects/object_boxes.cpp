@@ -28,19 +28,17 @@ struct Ends {
 
 }  // namespace
 
-std::vector<ObjectBox> object_boxes(const SolidScene& solids,
-                                    std::span<const std::int32_t> object_of_primitive,
+std::vector<ObjectBox> object_boxes(const SolidScene& solids, ObjectOf object_of,
                                     std::size_t objects) {
     const SolidCells& cells = solids.cells();
     const BoundaryCells& boundary = solids.boundary();
     const double h = cells.voxel_m;
-    std::vector<Ends> ends(objects);
+    Table<ObjectId, Ends> ends(objects);
     // That of an object, where a voxel may widen it.
-    const auto widened = [&](std::int32_t primitive, const Vec3& from, const Vec3& to) -> Ends* {
-        if (primitive < 0) return nullptr;
-        const std::int32_t o = object_of_primitive[static_cast<std::size_t>(primitive)];
+    const auto widened = [&](PrimitiveId primitive, const Vec3& from, const Vec3& to) -> Ends* {
+        const ObjectId o = object_of(primitive);
         if (o < 0) return nullptr;
-        Ends& box = ends[static_cast<std::size_t>(o)];
+        Ends& box = ends[o];
         return box.holds(from, to) ? nullptr : &box;
     };
     for (std::size_t c = 0; c < cells.size(); ++c) {

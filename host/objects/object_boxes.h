@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/object_of.h"
 #include "core/solid_scene.h"
 
 namespace topple {
@@ -20,9 +21,8 @@ struct ObjectBox {
 };
 
 // Of each of so many objects the box from end to end of what of it is solid, within voxels as far
-// as what bounds it there is known, else to a voxel. object_of_primitive: -1 for none.
-std::vector<ObjectBox> object_boxes(const SolidScene& solids,
-                                    std::span<const std::int32_t> object_of_primitive,
+// as what bounds it there is known, else to a voxel.
+std::vector<ObjectBox> object_boxes(const SolidScene& solids, ObjectOf object_of,
                                     std::size_t objects);
 
 }  // namespace topple

@@ -12,20 +12,18 @@
 namespace topple {
 namespace {
 
-std::vector<double> volumes(std::span<const std::int32_t> object_of_primitive,
-                            std::span<const physics::MassProperties> bodies, std::size_t objects) {
-    std::vector<double> out(objects, 0);
-    for (std::size_t p = 0; p < bodies.size(); ++p)
-        out[static_cast<std::size_t>(object_of_primitive[p])] += bodies[p].volume_m3;
+Table<ObjectId, double> sums(double physics::MassProperties::*of, ObjectOf object_of,
+                             TableView<PrimitiveId, physics::MassProperties> bodies,
+                             std::size_t objects) {
+    Table<ObjectId, double> out(objects, 0);
+    for (std::size_t p = 0; p < bodies.size(); ++p) out[object_of(p)] += bodies[p].*of;
     return out;
 }
 
-std::vector<std::int32_t> members(std::span<const std::int32_t> object_of_primitive,
-                                  std::size_t object) {
+std::vector<std::int32_t> members(ObjectOf object_of, ObjectId object) {
     std::vector<std::int32_t> out;
-    for (std::size_t p = 0; p < object_of_primitive.size(); ++p)
-        if (object_of_primitive[p] == static_cast<std::int32_t>(object))
-            out.push_back(static_cast<std::int32_t>(p));
+    for (std::size_t p = 0; p < object_of.primitives(); ++p)
+        if (object_of(p) == object) out.push_back(static_cast<std::int32_t>(p));
     return out;
 }
 
@@ -44,11 +42,11 @@ physics::BodyError scaled(physics::BodyError error, double factor) {
 
 // Makes the shell that is known of one object.
 void hollow_out(const SolidScene& solids, std::span<const std::int32_t> primitives, double wall_m,
-                double density_kg_m3, std::vector<physics::MassProperties>& bodies,
+                double density_kg_m3, Table<PrimitiveId, physics::MassProperties>& bodies,
                 physics::Symmetric& inertia) {
     const physics::HollowBody shell = physics::hollow_body(solids, primitives, wall_m);
     for (std::size_t n = 0; n < primitives.size(); ++n) {
-        physics::MassProperties& body = bodies[static_cast<std::size_t>(primitives[n])];
+        physics::MassProperties& body = bodies[primitives[n]];
         body.mass_kg = density_kg_m3 * shell.volume_m3[n];
         if (shell.volume_m3[n] > 0) body.center = shell.center[n];
     }
@@ -58,12 +56,11 @@ void hollow_out(const SolidScene& solids, std::span<const std::int32_t> primitiv
 
 // Scales the densities of one object to its mass.
 void weigh(std::span<const std::int32_t> primitives, double mass_kg,
-           std::vector<physics::MassProperties>& bodies, physics::Symmetric& inertia) {
+           Table<PrimitiveId, physics::MassProperties>& bodies, physics::Symmetric& inertia) {
     double before = 0;
-    for (const std::int32_t p : primitives) before += bodies[static_cast<std::size_t>(p)].mass_kg;
+    for (const std::int32_t p : primitives) before += bodies[p].mass_kg;
     if (!(before > 0)) return;
-    for (const std::int32_t p : primitives)
-        bodies[static_cast<std::size_t>(p)].mass_kg *= mass_kg / before;
+    for (const std::int32_t p : primitives) bodies[p].mass_kg *= mass_kg / before;
     for (double& value : inertia) value *= mass_kg / before;
 }
 
@@ -74,17 +71,17 @@ const char* to_string(MassModel model) {
     return names[static_cast<std::size_t>(model)];
 }
 
-ObjectMasses weigh_objects(const SolidScene& solids,
-                           std::span<const std::int32_t> object_of_primitive,
-                           std::span<const KnownMass> known, std::int32_t grounded,
+ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
+                           TableView<ObjectId, KnownMass> known, std::int32_t grounded,
                            const ParseOptions& options,
-                           std::vector<physics::MassProperties>& bodies) {
+                           Table<PrimitiveId, physics::MassProperties>& bodies) {
     const std::size_t objects = known.size();
     ObjectMasses out;
     out.objects.resize(objects);
-    std::vector<double> density(objects, options.density_kg_m3), inertia_density = density;
-    const std::vector<double> volume = volumes(object_of_primitive, bodies, objects);
-    auto looks = physics::furniture_looks(solids, object_of_primitive, volume);
+    Table<ObjectId, double> density(objects, options.density_kg_m3), inertia_density = density;
+    const Table<ObjectId, double> volume =
+        sums(&physics::MassProperties::volume_m3, object_of, bodies, objects);
+    auto looks = physics::furniture_looks(solids, object_of, volume);
     for (std::size_t o = 0; o < objects; ++o)
         if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) looks[o] = {};
     const physics::Repeated alike = physics::find_repeated(looks);
@@ -106,33 +103,31 @@ ObjectMasses weigh_objects(const SolidScene& solids,
         }
     }
     for (std::size_t p = 0; p < bodies.size(); ++p) {
-        out.density_kg_m3.push_back(density[static_cast<std::size_t>(object_of_primitive[p])]);
+        out.density_kg_m3.push_back(density[object_of(p)]);
         bodies[p].mass_kg = bodies[p].volume_m3 * out.density_kg_m3.back();
     }
     const std::vector<physics::Symmetric> moments = physics::second_moments(
         solids.cells(), static_cast<std::int32_t>(bodies.size()), solids.boundary());
     const std::vector<physics::Symmetric> inertia =
-        physics::inertia_of_objects(moments, bodies, object_of_primitive, inertia_density);
+        physics::inertia_of_objects(moments, bodies, object_of, inertia_density);
     for (std::size_t o = 0; o < objects; ++o) {
         ObjectMasses::Object& object = out.objects[o];
         object.inertia = inertia[o];
         object.weighed = known[o].mass_kg.has_value();
         if (known[o].wall_m) object.model = MassModel::hollow;
         if (!known[o].wall_m && !object.weighed) continue;
-        const std::vector<std::int32_t> primitives = members(object_of_primitive, o);
+        const std::vector<std::int32_t> primitives = members(object_of, o);
         if (known[o].wall_m)
             hollow_out(solids, primitives, *known[o].wall_m, options.density_kg_m3, bodies,
                        object.inertia);
         if (object.weighed) weigh(primitives, *known[o].mass_kg, bodies, object.inertia);
         for (const std::int32_t p : primitives) {
-            const physics::MassProperties& body = bodies[static_cast<std::size_t>(p)];
-            out.density_kg_m3[static_cast<std::size_t>(p)] =
-                body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0;
+            const physics::MassProperties& body = bodies[p];
+            out.density_kg_m3[p] = body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0;
         }
     }
-    std::vector<double> mass(objects, 0);
-    for (std::size_t p = 0; p < bodies.size(); ++p)
-        mass[static_cast<std::size_t>(object_of_primitive[p])] += bodies[p].mass_kg;
+    const Table<ObjectId, double> mass =
+        sums(&physics::MassProperties::mass_kg, object_of, bodies, objects);
     for (std::size_t o = 0; o < objects; ++o)
         out.objects[o].alike_error_kg = physics::error_among_alike_kg(mass, alike[o], o);
     return out;

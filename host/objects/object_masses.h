@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/object_of.h"
 #include "core/solid_scene.h"
 #include "physics/bodies.h"
 #include "physics/body_errors.h"
@@ -36,17 +37,15 @@ struct ObjectMasses {
         physics::Symmetric inertia{};       // about its centre of mass
         double alike_error_kg = 0;          // see physics/repeated_objects.h
     };
-    std::vector<double> density_kg_m3;  // by primitive: mass over volume
-    std::vector<Object> objects;
+    Table<PrimitiveId, double> density_kg_m3;  // mass over volume
+    Table<ObjectId, Object> objects;
 };
 
 // Gives `bodies`, of primitives at the density of the options, the masses that they have in their
 // objects, and those of shells their centres. grounded: the object that is the room; -1: none.
-// known: by object.
-ObjectMasses weigh_objects(const SolidScene& solids,
-                           std::span<const std::int32_t> object_of_primitive,
-                           std::span<const KnownMass> known, std::int32_t grounded,
+ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
+                           TableView<ObjectId, KnownMass> known, std::int32_t grounded,
                            const ParseOptions& options,
-                           std::vector<physics::MassProperties>& bodies);
+                           Table<PrimitiveId, physics::MassProperties>& bodies);
 
 }  // namespace topple

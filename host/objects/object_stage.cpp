@@ -33,8 +33,7 @@ graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
     for (const double odds : log_odds) out.pinned.push_back(odds > fitted::log_odds(surely_shell));
     // Something is the ground that all else stands on: a table in a close view.
     if (!log_odds.empty() && std::ranges::find(out.pinned, true) == out.pinned.end())
-        out.pinned[static_cast<std::size_t>(std::ranges::max_element(log_odds) -
-                                            log_odds.begin())] = true;
+        out.pinned[std::ranges::max_element(log_odds) - log_odds.begin()] = true;
     return out;
 }
 
@@ -67,27 +66,27 @@ void number_objects(ObjectStage& out) {
         out.object_of_primitive.push_back(g + grounded + 1);
 }
 
-// By primitive the voxels that its surface was seen in.
-std::vector<std::uint64_t> seen_surface(const SolidCells& cells, std::size_t primitives) {
-    std::vector<std::uint64_t> out(primitives, 0);
+// The voxels that the surface of each was seen in.
+Table<PrimitiveId, std::uint64_t> seen_surface(const SolidCells& cells, std::size_t primitives) {
+    Table<PrimitiveId, std::uint64_t> out(primitives, 0);
     for (std::size_t n = 0; n < cells.size(); ++n)
-        if (cells.primitive[n] >= 0 && cells.basis[n] == Basis::surface)
-            ++out[static_cast<std::size_t>(cells.primitive[n])];
+        if (cells.primitive[n] >= 0 && cells.basis[n] == Basis::surface) ++out[cells.primitive[n]];
     return out;
 }
 
 // What objects may be pieces of, and whether they may be several.
 void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
                    const SolidCells& cells, ObjectStage& out) {
-    const std::vector<std::uint64_t> seen = seen_surface(cells, out.object_of_primitive.size());
-    std::vector<std::uint64_t> of_objects(out.objects.size(), 0);  // none of the ground
+    const Table<PrimitiveId, std::uint64_t> seen =
+        seen_surface(cells, out.object_of_primitive.size());
+    Table<ObjectId, std::uint64_t> of_objects(out.objects.size(), 0);  // none of the ground
     for (std::size_t p = 0; p < seen.size(); ++p) {
-        const auto o = static_cast<std::size_t>(out.object_of_primitive[p]);
+        const ObjectId o = out.object_of_primitive[p];
         if (!out.objects[o].grounded) of_objects[o] += seen[p];
     }
-    const std::vector<graph::PieceOf> pieces =
+    const Table<ObjectId, graph::PieceOf> pieces =
         graph::likely_pieces(joints, links, out.object_of_primitive, of_objects);
-    const std::vector<graph::WeakestJoint> weakest =
+    const Table<ObjectId, graph::WeakestJoint> weakest =
         graph::weakest_joints(joints, links, out.object_of_primitive, seen, out.objects.size());
     for (std::size_t o = 0; o < out.objects.size(); ++o) {
         out.objects[o].piece = pieces[o];
@@ -96,24 +95,22 @@ void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks
 }
 
 // Objects by group, the ground first.
-void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, bool sensed,
+void collect_objects(const SolidScene& solids, const Table<PrimitiveId, bool>& shell, bool sensed,
                      const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
                      ObjectStage& out) {
     const SolidCells& cells = solids.cells();
     const BoundaryCells& boundary = solids.boundary();
-    const std::vector<std::int32_t>& group = out.grouping.group;
+    const Table<PrimitiveId, std::int32_t>& group = out.grouping.group;
     const bool has_ground = grounded_object(out) == 0;
     std::int32_t objects = 0;
     for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
-    const std::vector<KnownMass> known = hand.masses(
+    const Table<ObjectId, KnownMass> known = hand.masses(
         out.object_of_primitive, static_cast<std::size_t>(objects), grounded_object(out));
     const ObjectMasses masses = weigh_objects(solids, out.object_of_primitive, known,
                                               grounded_object(out), options, out.bodies);
-    std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
-    for (std::size_t p = 0; p < group.size(); ++p) {
-        members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
-            static_cast<std::int32_t>(p));
-    }
+    Table<ObjectId, std::vector<std::int32_t>> members(known.size());
+    for (std::size_t p = 0; p < group.size(); ++p)
+        members[out.object_of_primitive[p]].push_back(static_cast<std::int32_t>(p));
     const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
     const auto errors = physics::volume_errors(cells, boundary);
     out.floors = FloorHeights(solids);
@@ -150,13 +147,11 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell, b
         object.lowest_m = std::numeric_limits<double>::infinity();
         object.highest_m = -object.lowest_m;
         for (const std::int32_t p : object.candidate.primitives) {
-            object.lowest_m =
-                std::min(object.lowest_m, out.contacts.lowest_m[static_cast<std::size_t>(p)]);
-            object.highest_m =
-                std::max(object.highest_m, out.contacts.highest_m[static_cast<std::size_t>(p)]);
+            object.lowest_m = std::min(object.lowest_m, out.contacts.lowest_m[p]);
+            object.highest_m = std::max(object.highest_m, out.contacts.highest_m[p]);
         }
     });
-    std::vector<graph::Carried> carried;
+    Table<ObjectId, graph::Carried> carried;
     for (const Body& o : out.objects) carried.push_back({o.grounded, o.candidate.body.mass_kg});
     out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
                                         carried, columns);
@@ -186,21 +181,21 @@ physics::Toppling toppling_of(const Body& object, const physics::Stability& tipp
             object.sliding,   friction};
 }
 
-std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
-                                   const std::vector<Body>& objects) {
-    std::vector<bool> out;
-    for (const std::int32_t o : object_of_primitive)
-        out.push_back(o >= 0 && objects[static_cast<std::size_t>(o)].grounded);
+Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId, Body> objects) {
+    Table<PrimitiveId, bool> out;
+    for (std::size_t p = 0; p < object_of.primitives(); ++p) {
+        const ObjectId o = object_of(p);
+        out.push_back(o >= 0 && objects[o].grounded);
+    }
     return out;
 }
 
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const SolidScene& solids, const physics::HiddenWalls& walls,
-                   std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<Body>& objects, const Unseen& unseen) {
+                   const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
+                   double friction, std::vector<Body>& objects, const Unseen& unseen) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
-    const std::vector<ObjectBox> boxes = object_boxes(solids, object_of_primitive, objects.size());
+    const std::vector<ObjectBox> boxes = object_boxes(solids, object_of, objects.size());
     for (std::size_t o = 0; o < objects.size(); ++o) objects[o].box = boxes[o];
     std::vector<physics::Candidate> candidates;
     for (Body& o : objects) {
@@ -234,13 +229,13 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     }
     const std::vector<double> all_friction(candidates.size(), friction);
     std::vector<physics::SlideResult> sliding =
-        physics::slide_all(cells, object_of_primitive, bodies, all_friction,
+        physics::slide_all(cells, object_of, bodies, all_friction,
                            {.places = true,
                             .stances = stances,
                             .ways = safety::directions(),
                             .threads = &device.threads(),
                             .unseen = unseen});
-    const std::vector<bool> fixed = fixed_primitives(object_of_primitive, objects);
+    const std::vector<bool> fixed = fixed_primitives(object_of, objects);
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
         objects[o].open_tipping = tipping[o];

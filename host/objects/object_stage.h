@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/object_of.h"
+#include "core/table.h"
 #include "device/device.h"
 #include "device/stage_clock.h"
 #include "graph/contact_graph.h"
@@ -67,12 +69,12 @@ physics::Toppling toppling_of(const Body& object, const physics::Stability& tipp
                               double friction);
 
 struct ObjectStage {
-    std::vector<physics::MassProperties> bodies;  // by primitive
+    Table<PrimitiveId, physics::MassProperties> bodies;
     graph::ContactGraph contacts;
     std::vector<double> pair_probability;  // by pair of the contacts: that both are one solid
     graph::Grouping grouping;
-    std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
-    std::vector<Body> objects;
+    Table<PrimitiveId, std::int32_t> object_of_primitive;  // the ground, if any, is object 0
+    Table<ObjectId, Body> objects;
     FloorHeights floors;
     physics::HiddenWalls hidden_walls;
     std::vector<Support> supports;  // sorted by (supporter, supported)
@@ -82,7 +84,7 @@ struct ObjectStage {
 
 // What grouping starts from.
 struct PartStage {
-    std::vector<physics::MassProperties> bodies;  // by primitive
+    Table<PrimitiveId, physics::MassProperties> bodies;
     graph::ContactGraph contacts;
     std::vector<graph::Joint> joints;
     graph::ShellOdds shell;
@@ -90,17 +92,15 @@ struct PartStage {
 PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
                       StageClock& stage);
 
-// By primitive, whether it is of the building, or of what is fixed to it.
-std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
-                                   const std::vector<Body>& objects);
+// Whether they are of the building, or of what is fixed to it.
+Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId, Body> objects);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
 // their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
 // falls, and so do walls behind what hides them.
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const SolidScene& solids, const physics::HiddenWalls& walls,
-                   std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<Body>& objects, const Unseen& unseen = {});
+                   const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
+                   double friction, std::vector<Body>& objects, const Unseen& unseen = {});
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/table.h"
+
 namespace topple {
 namespace {
 
-using Holders = std::vector<std::vector<Support>>;  // of each object
+using Holders = Table<ObjectId, std::vector<Support>>;
 
 // Of two pieces that carry each other the lighter one is no support of the heavier.
-bool carried_back(const std::vector<Body>& objects, const Holders& holders, const Support& s) {
-    const auto by = static_cast<std::size_t>(s.supporter),
-               on = static_cast<std::size_t>(s.supported);
+bool carried_back(TableView<ObjectId, Body> objects, const Holders& holders, const Support& s) {
+    const ObjectId by = s.supporter, on = s.supported;
     if (objects[by].grounded ||
         objects[by].candidate.body.mass_kg >= objects[on].candidate.body.mass_kg)
         return false;
@@ -20,9 +21,9 @@ bool carried_back(const std::vector<Body>& objects, const Holders& holders, cons
                                [&](const Support& back) { return back.supporter == s.supported; });
 }
 
-std::vector<std::int32_t> along_with(const std::vector<Body>& objects, const Holders& holders,
+std::vector<std::int32_t> along_with(TableView<ObjectId, Body> objects, const Holders& holders,
                                      std::size_t o) {
-    std::vector<bool> gone(objects.size());
+    Table<ObjectId, bool> gone(objects.size());
     gone[o] = true;
     for (bool more = true; more;) {
         more = false;
@@ -32,7 +33,7 @@ std::vector<std::int32_t> along_with(const std::vector<Body>& objects, const Hol
             for (const Support& s : holders[x]) {
                 if (carried_back(objects, holders, s)) continue;
                 all += s.area_m2;
-                if (gone[static_cast<std::size_t>(s.supporter)]) lost += s.area_m2;
+                if (gone[s.supporter]) lost += s.area_m2;
             }
             if (lost > 0 && 2 * lost >= all) gone[x] = more = true;
         }
@@ -49,8 +50,7 @@ std::vector<std::int32_t> along_with(const std::vector<Body>& objects, const Hol
 
 std::vector<std::vector<std::int32_t>> taken_along(const ObjectStage& stage) {
     Holders holders(stage.objects.size());
-    for (const Support& s : stage.supports)
-        holders[static_cast<std::size_t>(s.supported)].push_back(s);
+    for (const Support& s : stage.supports) holders[s.supported].push_back(s);
     std::vector<std::vector<std::int32_t>> out(stage.objects.size());
     for (std::size_t o = 0; o < out.size(); ++o)
         if (!stage.objects[o].grounded) out[o] = along_with(stage.objects, holders, o);

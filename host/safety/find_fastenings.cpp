@@ -10,7 +10,8 @@ namespace {
 constexpr double strap_m = 0.3;  // set by hand
 
 // Whether a part of the building beside the box's upper end was seen.
-bool building_near(const SolidScene& solids, const std::vector<bool>& fixed, const ObjectBox& box) {
+bool building_near(const SolidScene& solids, const Table<PrimitiveId, bool>& fixed,
+                   const ObjectBox& box) {
     const SolidCells& cells = solids.cells();
     const double h = cells.voxel_m;
     const auto index = [h](double x) { return static_cast<std::int32_t>(std::floor(x / h)); };
@@ -28,9 +29,7 @@ bool building_near(const SolidScene& solids, const std::vector<bool>& fixed, con
                 const std::int32_t p = cells.primitive[n];
                 if (p < 0 || cells.k[n] < low || cells.k[n] > high) continue;
                 const Role role = solids.role(p);
-                if (fixed[static_cast<std::size_t>(p)] && role != Role::floor &&
-                    role != Role::ceiling)
-                    return true;
+                if (fixed[p] && role != Role::floor && role != Role::ceiling) return true;
             }
         }
     }
@@ -56,23 +55,18 @@ bool hidden_wall_near(const physics::HiddenWalls& walls, const ObjectBox& box) {
 
 // Whether what carries most of it is the floor, or of the building and hardly higher, as scraps of
 // a floor are; also where nothing is known to carry it.
-bool on_floor(const SolidScene& solids, const ObjectStage& objects, double floor_m,
-              std::int32_t o) {
+bool on_floor(const SolidScene& solids, const ObjectStage& objects, double floor_m, ObjectId o) {
     constexpr double hardly_m = 0.15;  // set by hand
     const graph::Carrying* most = nullptr;
-    const auto object = [&](std::int32_t p) {
-        return p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)];
-    };
+    const ObjectOf object(objects.object_of_primitive);
     for (const graph::Carrying& c : objects.contacts.carryings) {
         if (object(c.supported) == o && object(c.supporter) != o &&
             (!most || c.area_m2 > most->area_m2))
             most = &c;
     }
     if (!most || most->supporter < 0 || solids.role(most->supporter) == Role::floor) return true;
-    const auto at = static_cast<std::size_t>(object(most->supporter));
-    return objects.objects[at].grounded &&
-           objects.objects[static_cast<std::size_t>(o)].candidate.support_height_m <
-               floor_m + hardly_m;
+    return objects.objects[object(most->supporter)].grounded &&
+           objects.objects[o].candidate.support_height_m < floor_m + hardly_m;
 }
 
 }  // namespace
@@ -86,7 +80,7 @@ std::vector<Fastening> find_fastenings(const SolidParts& parts, const ObjectStag
         if (objects.objects[o].grounded || !std::isfinite(box.middle_m[0])) continue;
         out[o].wall =
             building_near(*parts.solids, fixed, box) || hidden_wall_near(objects.hidden_walls, box);
-        out[o].floor = on_floor(*parts.solids, objects, floor_m, static_cast<std::int32_t>(o));
+        out[o].floor = on_floor(*parts.solids, objects, floor_m, o);
     }
     return out;
 }

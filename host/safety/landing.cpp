@@ -97,15 +97,14 @@ physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls,
 struct Reach {
     double ahead = 0, left = 0, right = 0, around = 0;
 };
-std::vector<Reach> reaches(const SolidScene& solids, const ObjectStage& objects,
-                           const std::vector<Way>& ways) {
-    std::vector<Reach> out(objects.objects.size());
+Table<ObjectId, Reach> reaches(const SolidScene& solids, const ObjectStage& objects,
+                               TableView<ObjectId, Way> ways) {
+    Table<ObjectId, Reach> out(objects.objects.size());
     const SolidCells& cells = solids.cells();
+    const ObjectOf object_of(objects.object_of_primitive);
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (cells.primitive[c] < 0) continue;
-        const auto primitive = static_cast<std::size_t>(cells.primitive[c]);
-        if (objects.object_of_primitive[primitive] < 0) continue;
-        const auto o = static_cast<std::size_t>(objects.object_of_primitive[primitive]);
+        const ObjectId o = object_of(cells.primitive[c]);
+        if (o < 0) continue;
         const Body& object = objects.objects[o];
         if (object.grounded) continue;
         const Vec3 &center = object.candidate.body.center, &way = ways[o].direction;
@@ -155,7 +154,7 @@ std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& object
     std::vector<Way> ways;
     for (const Body& from : objects.objects)
         ways.push_back(from.grounded ? Way{} : falling_way(from));
-    const std::vector<Reach> reach = reaches(*parts.solids, objects, ways);
+    const Table<ObjectId, Reach> reach = reaches(*parts.solids, objects, ways);
     const std::vector<bool> fixed = fixed_primitives(objects.object_of_primitive, objects.objects);
     std::vector<Landing> out(objects.objects.size());
     const std::vector<std::vector<std::int32_t>> taken = taken_along(objects);
@@ -165,7 +164,7 @@ std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& object
         out[o].takes_along = taken[o];
         std::vector<std::int32_t> along;  // primitives
         for (const std::int32_t x : taken[o]) {
-            const auto& of = objects.objects[static_cast<std::size_t>(x)].candidate.primitives;
+            const auto& of = objects.objects[x].candidate.primitives;
             along.insert(along.end(), of.begin(), of.end());
         }
         std::ranges::sort(along);

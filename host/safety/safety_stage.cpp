@@ -20,9 +20,8 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
     safety::Surroundings s;
     const SolidScene& solids = *parts.solids;
     s.cells = &solids.cells();
-    for (const std::int32_t p : solids.cells().primitive) {
-        s.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
-    }
+    const ObjectOf object_of(objects.object_of_primitive);
+    for (const std::int32_t p : solids.cells().primitive) s.object.push_back(object_of(p));
     for (std::size_t p = 0; p < solids.primitives(); ++p)
         s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
     for (const physics::MassProperties& b : objects.bodies)
