@@ -12,8 +12,8 @@
 
 #include "clouds.h"
 #include "core/random.h"
-#include "lab/temporary_folder.h"
 #include "errors.h"
+#include "lab/temporary_folder.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 #include "scale/work_files.h"

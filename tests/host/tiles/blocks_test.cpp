@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "lab/temporary_folder.h"
 #include "clouds.h"
+#include "lab/temporary_folder.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 

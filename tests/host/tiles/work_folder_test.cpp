@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "lab/temporary_folder.h"
 #include "errors.h"
+#include "lab/temporary_folder.h"
 #include "scale/binary_file.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
