@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/ranked.h"
 #include "vdb/completion.h"
 
 // Fronts of what is built in: a wall cabinet that was seen from before alone has neither sides nor
@@ -30,12 +31,9 @@ void find_bounds(const SolidCells& cells, Sheet& sheet) {
     for (std::size_t a = 0; a < 3; ++a) {
         values.clear();
         for (const std::size_t n : sheet.cells) values.push_back((*place[a])[n]);
-        const auto out = static_cast<std::ptrdiff_t>(values.size() / outermost);
-        const auto low = values.begin() + out, high = values.end() - 1 - out;
-        std::ranges::nth_element(values, low);
-        sheet.low[a] = *low;
-        std::ranges::nth_element(values, high);
-        sheet.high[a] = *high;
+        const std::size_t out = values.size() / outermost;
+        sheet.low[a] = ranked(values, out);
+        sheet.high[a] = ranked(values, values.size() - 1 - out);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "core/ranked.h"
 #include "vdb/completion.h"
 
 // Where filled solids end below: at the surface on which they are seen to stand.
@@ -30,12 +31,6 @@ struct Shape {
         return sides >= 3;
     }
 };
-
-std::int32_t median(std::vector<std::int32_t>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 struct Stand {
     std::int32_t on = -1;     // primitive
@@ -64,13 +59,13 @@ class Settling {
             Shape &own = shape(thing), &under = shape(on);
             if (levels.size() < std::max(least_crease, crease[thing] + 1)) continue;
             if (!under.surrounds(own)) continue;
-            const std::int32_t level = median(levels);
+            const std::int32_t level = upper_median(levels);
             const auto below =
                 std::ranges::count_if(own.seen, [&](std::int32_t k) { return k < level - 1; });
             if (static_cast<double>(below) > most_seen_below * static_cast<double>(own.seen.size()))
                 continue;
             crease[thing] = levels.size();
-            found[thing] = {on, level, median(under.bottoms)};
+            found[thing] = {on, level, upper_median(under.bottoms)};
         }
         return found;
     }
@@ -85,7 +80,7 @@ class Settling {
             // The highest voxel with its centre below the foot.
             const auto level =
                 static_cast<std::int32_t>(std::ceil(s.height_m / view_.voxel_m() - 0.5)) - 1;
-            stands[s.above] = {s.below, level, median(shape(s.below).bottoms)};
+            stands[s.above] = {s.below, level, upper_median(shape(s.below).bottoms)};
         }
     }
 

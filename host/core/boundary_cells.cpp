@@ -2,6 +2,7 @@
 #include "core/boundary_cells.h"
 
 #include <algorithm>
+#include <ranges>
 #include <tuple>
 
 namespace topple {
@@ -38,15 +39,10 @@ bool BoundaryCells::solid(std::size_t n, const Vec3& p, double slack_m) const {
 std::size_t BoundaryCells::first_from(std::int32_t vi, std::int32_t vj, std::int32_t vk,
                                       std::int32_t p) const {
     const std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t> wanted{vi, vj, vk, p};
-    std::size_t low = 0, high = size();
-    while (low < high) {
-        const std::size_t middle = (low + high) / 2;
-        if (std::tie(i[middle], j[middle], k[middle], primitive[middle]) < wanted)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    const auto all = std::views::iota(std::size_t{0}, size());
+    const auto found = std::ranges::partition_point(
+        all, [&](std::size_t n) { return std::tie(i[n], j[n], k[n], primitive[n]) < wanted; });
+    return static_cast<std::size_t>(found - all.begin());
 }
 
 std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t vk,

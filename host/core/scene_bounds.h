@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/ranked.h"
+
 // Bounds that a few stray points can't stretch: a reading through a window, a mirror, a bad return.
 namespace topple {
 
@@ -25,12 +27,8 @@ template <class T>
 std::array<T, 2> inner_range(std::vector<T>& values) {
     const std::size_t n = values.size();
     const std::size_t cut = n < 100 ? 0 : std::max<std::size_t>(1, n / 1000);
-    const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
-    const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(cut);
-    std::nth_element(values.begin(), low, values.end());
-    const T lowest = *low;
-    std::nth_element(values.begin(), high, values.end());
-    return {lowest, *high};
+    const T lowest = ranked(values, cut);
+    return {lowest, ranked(values, n - 1 - cut)};
 }
 
 // Bounds of all points; or, where these hold over four times as much space, the inner ranges per

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/ranked.h"
 #include "device/queue.h"
 #include "geometry/manhattan.h"
 #include "normal_cluster.hpp"
@@ -24,10 +25,8 @@ WeightedNormals weigh_normals(const Surfels& s, std::size_t most) {
     if (normals.size() == 0) return normals;
     std::vector<float> roughness;
     for (const std::uint32_t i : normals.surfel) roughness.push_back(s.roughness_m[i]);
-    const auto middle = roughness.begin() + static_cast<std::ptrdiff_t>(roughness.size() / 2);
-    std::nth_element(roughness.begin(), middle, roughness.end());
     // A hundredth of a cell: below it, roughness is rounding.
-    const float usual = std::max(*middle, static_cast<float>(0.01 * s.cell_m));
+    const float usual = std::max(upper_median(roughness), static_cast<float>(0.01 * s.cell_m));
     for (const std::uint32_t i : normals.surfel) {
         const float ratio = s.roughness_m[i] / usual;
         normals.weight.push_back(2.0f / (2.0f + ratio * ratio));

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/ranked.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -11,14 +13,7 @@ constexpr double along = 0.8;  // cosine of 37 degrees
 
 // The values at 1 % and 99 % of the order.
 std::array<double, 2> ends(std::vector<float>& values) {
-    if (values.empty()) return {0, 0};
-    const auto at = [&](double share) {
-        const auto nth =
-            static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-        std::nth_element(values.begin(), values.begin() + nth, values.end());
-        return static_cast<double>(values[static_cast<std::size_t>(nth)]);
-    };
-    const double low = at(0.01), high = at(0.99);
+    const double low = double{quantile(values, 0.01)}, high = double{quantile(values, 0.99)};
     return {low, high};
 }
 

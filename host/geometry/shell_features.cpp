@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/ranked.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -110,14 +112,8 @@ std::array<double, 5> sides(std::span<const Vector3d> some, double spacing_m,
         near += d < -slack && d > -0.5;
     }
     const double count = static_cast<double>(std::max<std::size_t>(1, distance.size()));
-    const auto at = [&](double share) {
-        if (distance.empty()) return 0.0;
-        const auto rank =
-            static_cast<std::ptrdiff_t>(share * static_cast<double>(distance.size() - 1));
-        std::ranges::nth_element(distance, distance.begin() + rank);
-        return distance[static_cast<std::size_t>(rank)];
-    };
-    return {behind / count, before / count, near / count, -at(0.005), at(0.995)};
+    return {behind / count, before / count, near / count, -quantile(distance, 0.005),
+            quantile(distance, 0.995)};
 }
 
 // Area of what looks up below it, or down above it, as a share of all that does.

@@ -6,18 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/ranked.h"
 #include "geometry/algebraic_model.h"
 
 namespace topple::geometry {
 
 namespace {
-
-float quantile(std::vector<float> values, double q) {
-    if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
 
 constexpr std::uint64_t split_chunk = 1 << 13;  // surfels handed to a thread at once
 
@@ -36,9 +30,7 @@ float nth_around(const Surfels& s, const std::vector<float>& value, std::size_t 
     std::vector<float> around{value[i]};
     for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e)
         around.push_back(value[s.neighbours[e]]);
-    const auto nth = around.begin() + static_cast<std::ptrdiff_t>(kept - 1);
-    std::nth_element(around.begin(), nth, around.end());
-    return *nth;
+    return ranked(around, kept - 1);
 }
 
 // The lower quartile of each surfel's neighbourhood, itself included: of 27 cells, of which those
@@ -83,7 +75,7 @@ double normal_noise(const Surfels& s, float smooth_m) {
             angles.push_back(static_cast<float>(std::acos(std::clamp(c, -1.0, 1.0))));
         }
     }
-    return quantile(std::move(angles), 0.5);
+    return quantile(angles, 0.5);
 }
 
 }  // namespace
@@ -91,8 +83,8 @@ double normal_noise(const Surfels& s, float smooth_m) {
 SplitScale measure_scale(const Surfels& surfels, ThreadPool& threads) {
     SplitScale scale;
     scale.layer_m = surfels.cell_m;
-    const float typical = quantile(surfels.roughness_m, 0.5);
-    const float rough = quantile(surfels.roughness_m, 0.75);
+    std::vector<float> roughness = surfels.roughness_m;
+    const float typical = quantile(roughness, 0.5), rough = quantile(roughness, 0.75);
     std::vector<float> noise = lower_neighbours(surfels, surfels.roughness_m, threads);
     noise = lower_neighbours(surfels, noise, threads);
     const double floor_m = cell_noise_share * surfels.cell_m;

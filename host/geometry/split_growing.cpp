@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/ranked.h"
 #include "core/sorted_order.h"
 #include "geometry/algebraic_model.h"
 #include "geometry/face_limits.h"
@@ -139,9 +140,7 @@ class Grower {
         mean.normalize();
         std::vector<double> cosine;
         for (const auto& d : direction) cosine.push_back(d.dot(mean));
-        const auto low = cosine.begin() + static_cast<std::ptrdiff_t>(cosine.size() / 10);
-        std::nth_element(cosine.begin(), low, cosine.end());
-        return *low < std::cos(flat_turn_deg * EIGEN_PI / 180);
+        return ranked(cosine, cosine.size() / 10) < std::cos(flat_turn_deg * EIGEN_PI / 180);
     }
 
     Members grow_quadric(const Members& start, AlgebraicModel& model) {

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/ranked.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -66,13 +68,10 @@ double find_spacing(const SurfaceSamples& s) {
             sixth.push_back(cell);
             continue;
         }
-        std::nth_element(distance.begin(), distance.begin() + (nth - 1), distance.end());
-        sixth.push_back(distance[nth - 1]);
+        sixth.push_back(ranked(distance, nth - 1));
     }
     if (sixth.empty()) return s.edge_m;
-    const auto middle = sixth.begin() + static_cast<std::ptrdiff_t>(sixth.size() / 2);
-    std::nth_element(sixth.begin(), middle, sixth.end());
-    return std::max(s.edge_m, lattice * *middle);
+    return std::max(s.edge_m, lattice * upper_median(sixth));
 }
 
 // The mean of the colours that are known, in fixed point as above.

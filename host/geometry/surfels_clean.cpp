@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "geometry/surfels_clean.h"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 
-#include "geometry/plane_fit.h"
+#include "core/ranked.h"
+#include "geometry/surfel_steps.h"
 
 namespace topple::geometry {
 namespace {
@@ -20,10 +19,7 @@ float median_rms(const PlaneFit& fit) {
         if (fit.normal[0][i] != 0 || fit.normal[1][i] != 0 || fit.normal[2][i] != 0)
             rms.push_back(fit.rms[i]);
     }
-    if (rms.empty()) return 0;
-    const auto middle = rms.begin() + static_cast<std::ptrdiff_t>(rms.size() / 2);
-    std::nth_element(rms.begin(), middle, rms.end());
-    return *middle;
+    return upper_median(rms);
 }
 
 // The part of a covariance that lies in the plane with the given normal: P C P, P = I - n n'.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "geometry/surfels_orient.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/surfel_steps.h"
 
 namespace topple::geometry {
 namespace {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "geometry/surfels_sides.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 
-#include "geometry/surfels_clean.h"
+#include "geometry/surfel_steps.h"
 
 namespace topple::geometry {
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "core/ranked.h"
 #include "geometry/surfels.h"
 
 // The resolution of a cloud.
@@ -143,11 +144,7 @@ double share_of(const std::vector<Spacings>& all, float Spacings::*which, double
     std::vector<float> distances;
     for (const Spacings& a : all)
         if (std::isfinite(a.*which)) distances.push_back(a.*which);
-    if (distances.empty()) return 0;
-    const auto at = distances.begin() +
-                    static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
-    std::nth_element(distances.begin(), at, distances.end());
-    return std::sqrt(static_cast<double>(*at));
+    return std::sqrt(static_cast<double>(quantile(distances, share)));
 }
 
 std::vector<Spacings> look_around(const CloudView& cloud, const std::vector<std::size_t>& points) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/ranked.h"
 #include "geometry/fourfold.h"
 
 namespace topple::geometry {
@@ -49,14 +50,8 @@ double azimuth_of_sides(const SurfaceSamples& s, const PrimitiveShape& p) {
 struct Reach {
     double low = 0, high = 0;
     explicit Reach(std::vector<double> at) {
-        const auto ranked = [&](double share) {
-            const auto rank = at.begin() + static_cast<std::ptrdiff_t>(
-                                               share * static_cast<double>(at.size() - 1));
-            std::ranges::nth_element(at, rank);
-            return *rank;
-        };
-        low = ranked(0.01);
-        high = ranked(0.99);
+        low = quantile(at, 0.01);
+        high = quantile(at, 0.99);
     }
     double length() const { return high - low; }
 };

@@ -43,32 +43,22 @@ FolderLock::FolderLock(const fs::path& folder) {
     const fs::path file = folder / file_name;
     const std::string pid = std::to_string(::getpid()) + "\n";
     for (;;) {
-        descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
-        if (descriptor_ < 0)
+        descriptor_ =
+            io::Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
+        if (descriptor_.get() < 0)
             io::fail(file, std::string("can't be written: ") + std::strerror(errno));
         // Where the file system has no locks, there is none.
-        if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-            const std::string owner = owner_of(descriptor_);
-            ::close(descriptor_);
-            io::fail(folder, "another run" + owner +
+        if (::flock(descriptor_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+            io::fail(folder, "another run" + owner_of(descriptor_.get()) +
                                  " is at work there; wait for its end, or choose another output "
                                  "folder");
         }
-        if (is_there(descriptor_, file)) break;
-        ::close(descriptor_);
+        if (is_there(descriptor_.get(), file)) break;
     }
     const bool told =
-        ::ftruncate(descriptor_, 0) == 0 &&
-        ::pwrite(descriptor_, pid.data(), pid.size(), 0) == static_cast<ssize_t>(pid.size());
-    if (!told) {
-        const int reason = errno;
-        ::close(descriptor_);
-        io::fail(file, std::string("can't be written: ") + std::strerror(reason));
-    }
-}
-
-FolderLock::~FolderLock() {
-    ::close(descriptor_);
+        ::ftruncate(descriptor_.get(), 0) == 0 &&
+        ::pwrite(descriptor_.get(), pid.data(), pid.size(), 0) == static_cast<ssize_t>(pid.size());
+    if (!told) io::fail(file, std::string("can't be written: ") + std::strerror(errno));
 }
 
 }  // namespace topple::tiles

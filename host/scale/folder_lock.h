@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "io/open_file.h"
+
 namespace topple::tiles {
 
 // Keeps other processes, on this machine and on others that see the folder, from working in it.
@@ -11,14 +13,11 @@ class FolderLock {
   public:
     // Throws Error(input) that names the process which has the lock, or why there can be none.
     explicit FolderLock(const std::filesystem::path& folder);
-    ~FolderLock();
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
 
     static constexpr const char* file_name = "topple-lock";
 
   private:
-    int descriptor_ = -1;
+    io::Descriptor descriptor_;
 };
 
 }  // namespace topple::tiles

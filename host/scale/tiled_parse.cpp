@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/ranked.h"
 #include "device/cancelling.h"
 #include "device/device.h"
 #include "device/stage_clock.h"
@@ -120,8 +121,7 @@ double find_spacing(const tiles::SpilledPoints& points, const fs::path& input) {
             points, bins[static_cast<std::size_t>(quantile * static_cast<double>(bins.size()))]);
         if (s > 0) spacings.push_back(s);
     }
-    std::ranges::sort(spacings);
-    const double spacing = spacings.empty() ? INFINITY : spacings[spacings.size() / 2];
+    const double spacing = spacings.empty() ? INFINITY : upper_median(spacings);
     if (spacing > sparsest_m)
         io::fail(input, "its points are " + io::short_number(spacing) + " m apart, more than the " +
                             io::short_number(sparsest_m) +
