@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "points/frame_checks.h"
 
+#include <array>
 #include <cmath>
 
 #include "core/pose_mends.h"
@@ -11,73 +12,27 @@ namespace {
 
 using geometry::PoseConvention;
 
-const char* words_of(PoseConvention convention) {
-    switch (convention) {
-        case PoseConvention::camera_to_world:
-            return "camera to world";
-        case PoseConvention::world_to_camera:
-            return "world to camera";
-        case PoseConvention::opengl:
-            return "of a camera with y up and z back, as in OpenGL, Blender and ARKit";
-        case PoseConvention::world_to_camera_opengl:
-            return "world to camera, with the camera's y up and z back, as OpenGL's view matrix";
-        case PoseConvention::body:
-            return "of a body with x ahead, y left and z up, as in ROS";
-        case PoseConvention::world_to_camera_body:
-            return "world to body, with x ahead, y left and z up, as in ROS";
-        case PoseConvention::w_first:
-            return "made of quaternions with w first";
-        case PoseConvention::transposed:
-            return "of transposed rotations (column-major, or quaternions with x, y, z negated)";
-    }
-    return "";
-}
-
-// What gives the poses that are meant.
-const char* mend_of(PoseConvention convention) {
-    switch (convention) {
-        case PoseConvention::camera_to_world:
-            return "each pose as it is";
-        case PoseConvention::world_to_camera:
-            return pose_mends::inverse.words;
-        case PoseConvention::opengl:
-            return pose_mends::turned.words;
-        case PoseConvention::world_to_camera_opengl:
-            return pose_mends::inverse_turned.words;
-        case PoseConvention::body:
-            return pose_mends::reordered.words;
-        case PoseConvention::world_to_camera_body:
-            return pose_mends::inverse_reordered.words;
-        case PoseConvention::w_first:
-            return pose_mends::w_last.words;
-        case PoseConvention::transposed:
-            return pose_mends::transposed.words;
-    }
-    return "";
-}
+// What poses are in a convention, and what gives those that are meant.
+struct ConventionText {
+    const char *words, *mend;
+};
+constexpr std::array<ConventionText, geometry::pose_conventions> texts{{
+    {"camera to world", "each pose as it is"},
+    {"world to camera", pose_mends::inverse.words},
+    {"of a camera with y up and z back, as in OpenGL, Blender and ARKit", pose_mends::turned.words},
+    {"world to camera, with the camera's y up and z back, as OpenGL's view matrix",
+     pose_mends::inverse_turned.words},
+    {"of a body with x ahead, y left and z up, as in ROS", pose_mends::reordered.words},
+    {"world to body, with x ahead, y left and z up, as in ROS",
+     pose_mends::inverse_reordered.words},
+    {"made of quaternions with w first", pose_mends::w_last.words},
+    {"of transposed rotations (column-major, or quaternions with x, y, z negated)",
+     pose_mends::transposed.words},
+}};
 
 std::string percent(double share) {
     return std::to_string(std::lround(100 * share)) + " %";
 }
-
-}  // namespace
-
-void note_principal_point(const Intrinsics& k, ScanOrigin origin, std::vector<std::string>& notes) {
-    const auto in_the_middle = [](double at, std::uint32_t size) {
-        return at >= 0.25 * size && at <= 0.75 * size;
-    };
-    if (in_the_middle(k.cx, k.width) && in_the_middle(k.cy, k.height)) return;
-    notes.push_back("The principal point (" + io::short_number(k.cx) + ", " +
-                    io::short_number(k.cy) + ") lies outside of the middle half of the images of " +
-                    std::to_string(k.width) + " x " + std::to_string(k.height) +
-                    " pixels, so that all is seen askew unless they were cut out of larger ones: " +
-                    "check cx and cy of " +
-                    (origin == ScanOrigin::frames_folder ? "intrinsics.json" : "the intrinsics") +
-                    ", mostly near (" + io::short_number(0.5 * (k.width - 1.0)) + ", " +
-                    io::short_number(0.5 * (k.height - 1.0)) + ").");
-}
-
-namespace {
 
 std::string counted_from_0(std::size_t frame) {
     return "frame " + std::to_string(frame) + " (counted from 0)";
@@ -105,6 +60,21 @@ std::string contradiction_text(const geometry::PoseContradiction& c, std::size_t
 
 }  // namespace
 
+void note_principal_point(const Intrinsics& k, ScanOrigin origin, std::vector<std::string>& notes) {
+    const auto in_the_middle = [](double at, std::uint32_t size) {
+        return at >= 0.25 * size && at <= 0.75 * size;
+    };
+    if (in_the_middle(k.cx, k.width) && in_the_middle(k.cy, k.height)) return;
+    notes.push_back("The principal point (" + io::short_number(k.cx) + ", " +
+                    io::short_number(k.cy) + ") lies outside of the middle half of the images of " +
+                    std::to_string(k.width) + " x " + std::to_string(k.height) +
+                    " pixels, so that all is seen askew unless they were cut out of larger ones: " +
+                    "check cx and cy of " +
+                    (origin == ScanOrigin::frames_folder ? "intrinsics.json" : "the intrinsics") +
+                    ", mostly near (" + io::short_number(0.5 * (k.width - 1.0)) + ", " +
+                    io::short_number(0.5 * (k.height - 1.0)) + ").");
+}
+
 std::string pose_note(const geometry::PoseComparison& frames, std::size_t count,
                       ScanOrigin origin) {
     const bool in_folder = origin == ScanOrigin::frames_folder;
@@ -126,8 +96,9 @@ std::string pose_note(const geometry::PoseComparison& frames, std::size_t count,
     };
     std::string words, mends;
     for (const PoseConvention convention : better) {
-        words.append(words.empty() ? "" : ", or ").append(words_of(convention));
-        mends.append(mends.empty() ? "" : ", or ").append(mend_of(convention));
+        const ConventionText& text = texts[static_cast<std::size_t>(convention)];
+        words.append(words.empty() ? "" : ", or ").append(text.words);
+        mends.append(mends.empty() ? "" : ", or ").append(text.mend);
     }
     return "The poses seem to be in another convention: of the readings of " +
            io::counted(found.pairs, "pair") + " of frames that look at the same place " +

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/depth_noise.h"
+#include "core/ranked.h"
 #include "core/solid_cells.h"
 #include "device/cancelling.h"
 #include "geometry/surfels.h"
@@ -32,27 +33,6 @@
 
 namespace topple {
 namespace {
-
-class SequenceStream final : public FrameStream {
-  public:
-    explicit SequenceStream(io::FrameSequence sequence) : sequence_(std::move(sequence)) {}
-    const Intrinsics& intrinsics() const override { return sequence_.intrinsics(); }
-    std::size_t size() const override { return sequence_.size(); }
-    DepthFrame load(std::size_t i) const override { return sequence_.load(i); }
-    DepthFrame load_coloured(std::size_t i) const override {
-        DepthFrame frame = sequence_.load(i);
-        frame.rgb = sequence_.colours().load(i);
-        return frame;
-    }
-
-  private:
-    io::FrameSequence sequence_;
-};
-
-Vec3 position(const DepthFrame& frame) {
-    const Mat4& m = frame.camera_to_world;
-    return {m[3], m[7], m[11]};
-}
 
 std::vector<Vec3> places_of(std::span<const Mat4> poses) {
     std::vector<Vec3> places;
@@ -115,16 +95,15 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
 
 Observation ingest_folder(device::Device& device, const std::filesystem::path& folder,
                           const ParseOptions& options) {
-    io::FrameSequence sequence = io::FrameSequence::open(folder);
+    auto stream = std::make_unique<io::FrameSequence>(io::FrameSequence::open(folder));
+    const io::FrameSequence& sequence = *stream;  // lives as long as what is returned
     Observation out;
     out.origin = ScanOrigin::frames_folder;
     out.camera_up = sequence.mean_camera_up();
     out.doubts = sequence.colours().notes();
-    std::vector<Mat4> poses;
-    for (std::size_t i = 0; sequence.posed() && i < sequence.size(); ++i)
-        poses.push_back(sequence.camera_to_world(i));
-    out.frames = std::make_unique<SequenceStream>(std::move(sequence));
-    fuse_frames(device, poses, folder.string(), options, out);
+    out.frames = std::move(stream);
+    fuse_frames(device, sequence.posed() ? std::span(sequence.poses()) : std::span<const Mat4>(),
+                folder.string(), options, out);
     return out;
 }
 
@@ -140,10 +119,7 @@ double typical_depth(const Intrinsics& k, std::size_t count,
             if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
         }
     }
-    if (depths.empty()) return 0;
-    std::nth_element(depths.begin(),
-                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-    return depths[depths.size() / 2];
+    return upper_median(depths);
 }
 
 double cell_for_frames(const Intrinsics& k, double typical_depth_m) {
@@ -250,8 +226,8 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Observat
     Intrinsics intrinsics;
     DepthFrame frame;
     if (cloud.height > 1 && geometry::frame_of_organised_cloud(cloud, intrinsics, frame)) {
-        out.viewpoints = {position(frame)};
         const Mat4& pose = frame.camera_to_world;
+        out.viewpoints = {Vec3{pose[3], pose[7], pose[11]}};
         out.camera_up = Vec3{-pose[1], -pose[5], -pose[9]};
         std::vector<DepthFrame> frames;
         frames.push_back(std::move(frame));

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
+
+#include "core/ranked.h"
 
 namespace topple::geometry {
 namespace {
@@ -60,51 +64,25 @@ Isometry3d isometry(const Mat4& pose) {
     return Isometry3d(Eigen::Map<const Matrix>(pose.data()).eval());
 }
 
-Mat4 pose_of(const Isometry3d& isometry) {
-    Mat4 out;
-    Eigen::Map<Matrix>(out.data()) = isometry.matrix();
-    return out;
-}
-
-// What turns poses of a camera with other axes into those of one with topple's: the directions of
-// these, x right, y down and z ahead, as columns.
-Isometry3d axes_of(PoseConvention convention) {
-    Isometry3d axes = Isometry3d::Identity();
-    switch (convention) {
-        case PoseConvention::opengl:
-        case PoseConvention::world_to_camera_opengl:
-            axes.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-            break;
-        case PoseConvention::body:
-        case PoseConvention::world_to_camera_body:
-            axes.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-            break;
-        default:
-            break;
-    }
-    return axes;
-}
-
+// The pose of a camera with topple's axes, x right, y down and z ahead: the columns of what turns
+// the camera's own into these.
 Isometry3d meant(const Isometry3d& given, PoseConvention convention) {
-    switch (convention) {
-        case PoseConvention::world_to_camera:
-        case PoseConvention::world_to_camera_opengl:
-        case PoseConvention::world_to_camera_body:
-            return given.inverse() * axes_of(convention);
-        case PoseConvention::w_first: {
-            const Eigen::Quaterniond q(given.linear());
-            Isometry3d out = given;
-            out.linear() = Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix();
-            return out;
-        }
-        case PoseConvention::transposed: {
-            Isometry3d out = given;
-            out.linear() = given.linear().transpose();
-            return out;
-        }
-        default:
-            return given * axes_of(convention);
+    using enum PoseConvention;
+    const bool inverse = convention == world_to_camera || convention == world_to_camera_opengl ||
+                         convention == world_to_camera_body;
+    Isometry3d out = inverse ? given.inverse() : given;
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+    if (convention == opengl || convention == world_to_camera_opengl)
+        axes << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+    if (convention == body || convention == world_to_camera_body)
+        axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    out.linear() *= axes;
+    if (convention == transposed) out.linear() = given.linear().transpose();
+    if (convention == w_first) {
+        const Eigen::Quaterniond q(given.linear());
+        out.linear() = Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix();
     }
+    return out;
 }
 
 double turn_between(const Isometry3d& a, const Isometry3d& b) {
@@ -115,10 +93,9 @@ double turn_between(const Isometry3d& a, const Isometry3d& b) {
 std::vector<PoseConvention> better_than_given(
     const std::array<Agreement, pose_conventions>& found) {
     const auto common = [&](std::size_t n) { return found[n].common_share(); };
-    std::vector<std::size_t> order;
-    for (std::size_t n = 0; n < pose_conventions; ++n) order.push_back(n);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return common(a) > common(b); });
+    std::array<std::size_t, pose_conventions> order{};
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater{}, common);
     const Agreement &best = found[order[0]], &given = found[0];
     if (best.agreeing_share() < least_agreeing || best.common_share() < least_common ||
         given.agreeing_share() > most_given_agreeing * best.agreeing_share() ||
@@ -131,17 +108,12 @@ std::vector<PoseConvention> better_than_given(
     return out;
 }
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 }  // namespace
 
 Mat4 pose_meant(const Mat4& given, PoseConvention convention) {
-    return pose_of(meant(isometry(given), convention));
+    Mat4 out;
+    Eigen::Map<Matrix>(out.data()) = meant(isometry(given), convention).matrix();
+    return out;
 }
 
 PoseComparison::PoseComparison(const Intrinsics& k, std::span<const Mat4> poses,
@@ -232,14 +204,16 @@ bool PoseComparison::has_witnesses(const Pair& pair, const Isometry3d& moved) co
                      would.common_share() > is.common_share() + least_witness_gain;
     };
     Witnesses before, after;
-    for (std::size_t n = pair.a - std::min(pair.a, witness_steps);
-         n < std::min(pair.b, pair.a + witness_steps + 1); ++n)
-        if (n != pair.a && frames_.has(n))
+    const auto near = [&](std::size_t n, std::size_t frame) {
+        return n != frame && frames_.has(n) && n + witness_steps >= frame &&
+               n <= frame + witness_steps;
+    };
+    for (std::size_t n = 0; n < frames_.size(); ++n) {
+        if (n < pair.b && near(n, pair.a))
             hear(before, n, pair.b, moved * poses_[pair.a].inverse() * poses_[n]);
-    for (std::size_t n = std::max(pair.a + 1, pair.b - std::min(pair.b, witness_steps));
-         n < std::min(frames_.size(), pair.b + witness_steps + 1); ++n)
-        if (n != pair.b && frames_.has(n))
+        if (n > pair.a && near(n, pair.b))
             hear(after, pair.a, n, poses_[n].inverse() * poses_[pair.b] * moved);
+    }
     return before.agree() || after.agree() ||
            Witnesses{before.fit + after.fit, before.seen + after.seen}.agree();
 }
@@ -311,9 +285,9 @@ std::optional<PoseContradiction> PoseComparison::find_contradiction() const {
     find_first(out);
     out.until = fits_again(out.from, compared);
     out.same_pose = poses_[out.from].matrix() == poses_[out.from - 1].matrix();
-    out.way_m = median(std::move(ways));
-    out.doubled_m = median(std::move(doubled));
-    out.turn_deg = median(std::move(turns)) * 180 / std::numbers::pi;
+    out.way_m = upper_median(ways);
+    out.doubled_m = upper_median(doubled);
+    out.turn_deg = upper_median(turns) * 180 / std::numbers::pi;
     for (std::size_t* number : {&out.from, &out.until, &out.against}) *number *= every_;
     return out;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/number_text.h"
+#include "core/ranked.h"
 #include "core/vectors.h"
 #include "io/text.h"
 #include "points/observation.h"
@@ -146,14 +147,13 @@ void check_camera_steps(std::span<const Vec3> places, const std::string& source)
     std::vector<double> steps;
     for (std::size_t n = 1; n < places.size(); ++n)
         steps.push_back(length(minus(places[n], places[n - 1])));
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    if (*middle <= longest_step_m) return;
+    const double step = upper_median(steps);
+    if (step <= longest_step_m) return;
     throw Error(ErrorKind::input,
-                source + ": the camera moves by " + text_of(*middle) +
+                source + ": the camera moves by " + text_of(step) +
                     " m from one frame to the next: places of poses are metres; if these are mm, "
                     "multiply them by 0.001" +
-                    (*middle * 0.01 <= longest_step_m ? ", by 0.01 if cm" : ""));
+                    (step * 0.01 <= longest_step_m ? ", by 0.01 if cm" : ""));
 }
 
 void check_readings(const Intrinsics& k, std::size_t frames, double typical_depth_m,

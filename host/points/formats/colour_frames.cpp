@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <system_error>
@@ -29,9 +28,7 @@ std::map<fs::path, std::string> images_in(const fs::path& scan) {
     if (error) fail(folder, why_not_opened(error.value()));
     for (const std::string& name : names) {
         const fs::path file = name;
-        auto extension = file.extension().string();
-        std::transform(extension.begin(), extension.end(), extension.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        const std::string extension = lower_case(file.extension().string());
         if ((extension != ".png" && extension != ".jpg" && extension != ".jpeg") ||
             name.front() == '.')
             continue;

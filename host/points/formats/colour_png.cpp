@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <csetjmp>
 #include <string>
 
 #include "io/text.h"
@@ -7,50 +6,26 @@
 #include "points/formats/png_reader.h"
 
 namespace topple::io {
-namespace {
-
-// Whatever there is becomes 8 bits of red, green and blue.
-bool turn_to_rgb(png_structp png, png_infop info, std::size_t* row_bytes) {
-    if (setjmp(png_jmpbuf(png))) return false;
-    png_set_expand(png);
-    png_set_strip_16(png);
-    png_set_strip_alpha(png);
-    png_set_gray_to_rgb(png);
-    png_set_interlace_handling(png);
-    png_read_update_info(png, info);
-    *row_bytes = png_get_rowbytes(png, info);
-    return true;
-}
-
-bool read_colour_rows(png_structp png, png_infop info, png_bytepp rows) {
-    if (setjmp(png_jmpbuf(png))) return false;
-    png_read_image(png, rows);
-    png_read_end(png, info);
-    return true;
-}
-
-}  // namespace
 
 ColourImage decode_colour_png(const std::filesystem::path& file, std::string_view bytes,
                               const SizeCheck& check) {
-    PngSource source(bytes);
-    const PngReader reader(source);
-    if (!reader.info) fail(file, "can't be read: no memory for the PNG reader");
-    const auto refuse = [&] { fail(file, printable(source.message, sizeof(source.message))); };
-    PngShape shape{};
-    if (!read_png_shape(reader, &source, &shape)) refuse();
-    check(shape.width, shape.height);
-    std::size_t row_bytes = 0;
-    if (!turn_to_rgb(reader.png, reader.info, &row_bytes)) refuse();
-    if (row_bytes != std::size_t{3} * shape.width) {
+    PngReader png(file, bytes);
+    check(png.width(), png.height());
+    // Whatever there is becomes 8 bits of red, green and blue.
+    const std::size_t row_bytes = png.turn([](png_structp p) {
+        png_set_expand(p);
+        png_set_strip_16(p);
+        png_set_strip_alpha(p);
+        png_set_gray_to_rgb(p);
+        png_set_interlace_handling(p);
+    });
+    if (row_bytes != std::size_t{3} * png.width()) {
         fail(file, "has rows of " + counted(row_bytes, "byte") + ", where " +
-                       std::to_string(shape.width) + " pixels take 3 each; save it as RGB");
+                       std::to_string(png.width()) + " pixels take 3 each; save it as RGB");
     }
-    ColourImage image{shape.width, shape.height, {}};
-    image.rgb.resize(row_bytes * shape.height);
-    std::vector<png_bytep> rows(shape.height);
-    for (std::uint32_t v = 0; v < shape.height; ++v) rows[v] = image.rgb.data() + v * row_bytes;
-    if (!read_colour_rows(reader.png, reader.info, rows.data())) refuse();
+    ColourImage image{png.width(), png.height(), {}};
+    image.rgb.resize(row_bytes * png.height());
+    png.read(image.rgb.data(), row_bytes);
     return image;
 }
 

@@ -2,7 +2,6 @@
 #include "points/formats/frame_sequence.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <system_error>
 
@@ -42,9 +41,7 @@ std::vector<FileName> list_images(const fs::path& folder) {
     const std::vector<std::string> names = folder_names(FileName::in(folder, "depth"), error);
     if (error) fail(depth, why_not_opened(error.value()));
     for (const fs::path name : names) {
-        auto extension = name.extension().string();
-        std::transform(extension.begin(), extension.end(), extension.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        const std::string extension = lower_case(name.extension().string());
         if (extension == ".png" && name.native().front() != '.') images.push_back(name);
     }
     if (images.empty()) fail(depth, "has no .png; a sequence needs at least one depth image");
@@ -94,6 +91,12 @@ DepthFrame FrameSequence::load(std::size_t index) const {
     DepthFrame frame;
     frame.depth = read_depth_png(images_.at(index), intrinsics_.width, intrinsics_.height);
     frame.camera_to_world = poses_.at(index);
+    return frame;
+}
+
+DepthFrame FrameSequence::load_coloured(std::size_t index) const {
+    DepthFrame frame = load(index);
+    frame.rgb = colours_.load(index);
     return frame;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "points/formats/colour_frames.h"
+#include "points/frame_stream.h"
 #include "topple/input.h"
 
 namespace topple::io {
@@ -19,21 +20,23 @@ namespace topple::io {
 //   trajectory.txt    a pose per image, camera to world, metres; camera x right, y down, z forward:
 //                     see read_trajectory(). Or trajectory.log, or poses.txt; one of them.
 // Without any it must hold one image; its camera is then the world's origin.
-class FrameSequence {
+class FrameSequence final : public FrameStream {
   public:
     // Reads all but the images. Throws Error(input) naming the file that is missing or wrong.
     static FrameSequence open(const std::filesystem::path& folder);
 
-    const Intrinsics& intrinsics() const { return intrinsics_; }
-    std::size_t size() const { return images_.size(); }
+    const Intrinsics& intrinsics() const override { return intrinsics_; }
+    std::size_t size() const override { return images_.size(); }
     bool posed() const { return posed_; }  // there is a file of poses
     const std::filesystem::path& image(std::size_t index) const { return images_.at(index).path(); }
     const Mat4& camera_to_world(std::size_t index) const { return poses_.at(index); }
+    const std::vector<Mat4>& poses() const { return poses_; }
 
     // Reads image `index` < size(). May be called from several threads at once. Throws Error(input)
     // naming the image where it is damaged, no 16-bit grey PNG, or of another size than
     // intrinsics().
-    DepthFrame load(std::size_t index) const;
+    DepthFrame load(std::size_t index) const override;
+    DepthFrame load_coloured(std::size_t index) const override;
     // The colour images of the same frames.
     const ColourFrames& colours() const { return colours_; }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -21,13 +20,6 @@ namespace {
 
 bool starts_as_ply(std::string_view bytes) {
     return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n") || bytes.starts_with("ply\r");
-}
-
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
 }
 
 bool is_text(const std::string& extension) {
@@ -80,7 +72,7 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
         return sink ? parse_ply(file, text, sink) : parse_ply_or_mesh(file, text, unit_m, sampling);
     if (text.starts_with("# .PCD")) return parse_pcd(file, text, sink);
 
-    const auto extension = lower_extension(file);
+    const auto extension = lower_case(file.extension().string());
     if (const auto format = mesh_format(text, extension)) {
         auto mesh = parse_mesh(file, text, *format, unit_m, sampling);
         if (!mesh) fail(file, "is a mesh without any face that has an area");
@@ -113,7 +105,7 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
 // `unit_m` where it was asked for, else what the file says.
 StatedUnit unit_of(const std::filesystem::path& file, std::string_view text, double unit_m) {
     if (unit_m != 1) return {{unit_m, unit_m, unit_m}, ""};
-    const auto extension = lower_extension(file);
+    const auto extension = lower_case(file.extension().string());
     std::optional<StatedUnit> stated;
     if (starts_as_las(text)) {
         stated = unit_of_las(file, text);
@@ -164,20 +156,20 @@ bool is_mesh(const std::filesystem::path& file) {
     const std::string_view text = bytes.text();
     if (starts_as_ply(text)) return ply_has_faces(text);
     if (text.starts_with("# .PCD")) return false;
-    return mesh_format(text, lower_extension(file)).has_value();
+    return mesh_format(text, lower_case(file.extension().string())).has_value();
 }
 
 std::optional<Vec3> up_of_format(const std::filesystem::path& file) {
     const MappedFile bytes(file);
     const std::string_view text = bytes.text();
     if (starts_as_ply(text) || text.starts_with("# .PCD")) return std::nullopt;
-    const auto format = mesh_format(text, lower_extension(file));
+    const auto format = mesh_format(text, lower_case(file.extension().string()));
     if (format != MeshFormat::glb && format != MeshFormat::gltf) return std::nullopt;
     return Vec3{0, 1, 0};
 }
 
 bool can_stream(const std::filesystem::path& file) {
-    const auto extension = lower_extension(file);
+    const auto extension = lower_case(file.extension().string());
     constexpr std::array<std::string_view, 8> clouds{".ply", ".pcd", ".las", ".xyz",
                                                      ".txt", ".csv", ".asc", ".pts"};
     return std::ranges::find(clouds, extension) != clouds.end();
