@@ -50,7 +50,6 @@ void print_json(const Estimate& e) {
         {"views", e.views},
         {"patches_m", e.patches_m},
         {"ground_m2", e.ground_m2},
-        {"rough_surfels", e.rough_surfels},
         {"box_voxels", e.box_voxels},
         {"surface_voxels", e.surface_voxels},
         {"unit_hint", in_words_of(Interface::command_line, e.unit_hint)},

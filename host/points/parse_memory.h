@@ -14,12 +14,10 @@ namespace topple {
 
 // What decides the peak of a parse in one piece: its points, voxels of the surface and of the box
 // around it, the ground there, what stands on it (scan_look.h), and whether a cloud is looked at
-// from virtual views; and, of its time, the pixels of its frames, too, and how many surfels are as
-// rough as they are wide (scan_look.h).
+// from virtual views.
 struct OnePiece {
     double points = 0, surface_voxels = 0, box_voxels = 0, ground_m2 = 0, patches_m = 0;
     bool views = true;
-    double pixels = 0, rough_surfels = 0;
 
     // Voxels of the grid that are worked on: as many as the geometric mean of those of the surface
     // and those of the box.
@@ -37,14 +35,11 @@ inline double one_piece_peak(const OnePiece& of) {
            a_patch_m * of.patches_m;
 }
 
-// Seconds of the processor that the stages take together where estimate()'s probe takes 27 ms,
-// fitted by their logarithms: of a point, of a frame's pixel, of a voxel of the grid, of a metre of
-// patches, of a rough surfel, and of every run.
+// Seconds of the processor that the stages take together where estimate()'s probe takes 27 ms: a
+// rate, of a voxel of the grid, and what every run takes.
 inline double one_piece_seconds(const OnePiece& of) {
-    constexpr double point = 2.57e-6, pixel = 6e-8, voxel = 2.53e-6, patch_m = 0.0224,
-                     rough_surfel = 2.03e-4, fixed = 0.095;
-    return fixed + point * of.points + pixel * of.pixels + voxel * of.grid_voxels() +
-           patch_m * of.patches_m + rough_surfel * of.rough_surfels;
+    constexpr double fixed = 0.3, voxel = 7e-6;
+    return fixed + voxel * of.grid_voxels();
 }
 
 // While frames are fused: beside their cells, with readings that wait, of four million pixels at

@@ -77,10 +77,6 @@ ScanLook look_at_scan(device::Device& device, const PointCloud& cloud, double ce
     out.box = grid_box(cloud, geometry::find_scene_frame(device, surfels, hints).axes);
     for (const geometry::Region& r : geometry::split(surfels, device.threads()).regions)
         out.patches_m += surfel_m * std::sqrt(static_cast<double>(r.surfels));
-    std::vector<float> roughness = surfels.roughness_m;
-    const auto middle = roughness.begin() + static_cast<std::ptrdiff_t>(roughness.size() / 2);
-    std::nth_element(roughness.begin(), middle, roughness.end());
-    if (middle != roughness.end()) out.roughness = *middle / surfel_m;
     return out;
 }
 

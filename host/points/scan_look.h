@@ -24,9 +24,6 @@ struct ScanLook {
     // Sum over the smooth patches of the surface of their edges as squares, metres: grows with how
     // much stands in a room, as the edges do at which patches meet.
     double patches_m = 0;
-    // How rough the surface is: the median over its surfels of the rms distance of points from the
-    // plane, over the surfel's edge. Noise and clutter make more, smaller patches.
-    double roughness = 0;
     GridBox box;
 };
 

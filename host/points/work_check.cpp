@@ -54,21 +54,15 @@ OnePiece piece_of(const Observation& input, const FramedSurfels& surfels, double
     const GridBox box = grid_box(input.cloud, surfels.frame.axes);
     // Of sparse points more than their own cells: gaps between them are closed.
     const double area_m2 = static_cast<double>(surfels.surfels.size()) * surfels.surfels.area_m2;
-    double space_m3 = box.m3(), pixels = 0;
-    if (input.frames) {
-        const Intrinsics& k = input.frames->intrinsics();
-        pixels = static_cast<double>(input.frames->size()) * k.width * k.height;
-        if (input.frames->size() == 1)
-            space_m3 = std::min(space_m3, seen_m3(input.frames->load(0), k));
-    }
+    double space_m3 = box.m3();
+    if (input.frames && input.frames->size() == 1)
+        space_m3 = std::min(space_m3, seen_m3(input.frames->load(0), input.frames->intrinsics()));
     return {static_cast<double>(input.cloud.size()),
             area_m2 / (voxel_m * voxel_m),
             space_m3 / (voxel_m * voxel_m * voxel_m),
             box.ground_m2,
             0,
-            input.frames != nullptr,
-            pixels,
-            0};
+            input.frames != nullptr};
 }
 
 }  // namespace

@@ -36,13 +36,10 @@ namespace topple {
 namespace {
 
 // Seconds of the processor that the stages take together in blocks where the probe takes
-// probe_reference_s: of a point (sorting, thinning, writing), a thinned cell, a square metre of
-// surface, whatever its resolution, and every run. tests/estimates/estimates.py fits them and those
-// of parse_memory.h, but for those of a pixel, and of a point and a cell in blocks: two long
-// sequences and two large buildings gave them.
+// probe_reference_s: of a thinned cell, and of every run. tests/estimates/estimates.py fits them
+// and those of parse_memory.h.
 constexpr double probe_reference_s = 0.027;
-constexpr double tiled_point_s = 0.27e-6, tiled_cell_s = 3.4e-6, tiled_m2_s = 0.014,
-                 tiled_fixed_s = 0.01;
+constexpr double tiled_cell_s = 6e-6, tiled_fixed_s = 1.5;
 // What of that one thread does alone; threads share the rest.
 constexpr double serial_share = 0.15;
 // Of the cells that a surface passes, those in which frames are fused to a point that stays.
@@ -330,8 +327,7 @@ void reckon_blocks(device::Device& device, const ParseOptions& options, Estimate
                           std::max(finest, asked_cell_m > 0 ? asked_cell_m : building_cell_m));
     const double thinned =
         std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
-    out.processor_s = tiled_fixed_s + tiled_point_s * points + tiled_cell_s * thinned +
-                      tiled_m2_s * out.surface_m2;
+    out.processor_s = tiled_fixed_s + tiled_cell_s * thinned;
     const double block = block_bytes(
         static_cast<std::uint64_t>(std::min(thinned, static_cast<double>(block_cells))));
     double lanes =
@@ -353,9 +349,7 @@ OnePiece piece_of(const Estimate& e) {
             e.box_voxels,
             e.ground_m2,
             e.patches_m,
-            e.views,
-            static_cast<double>(e.pixels),
-            e.rough_surfels};
+            e.views};
 }
 
 void reckon_one_piece(device::Device& device, const ParseOptions& options, Looked& looked,
@@ -368,10 +362,8 @@ void reckon_one_piece(device::Device& device, const ParseOptions& options, Looke
     const ScanLook look =
         look_at_scan(device, looked.cloud, out.cell_m, out.surface_m2, looked.hints);
     const double h = out.voxel_m;
-    const double surfel_m = surfel_cells * out.cell_m;
     out.views = looked.views;
     out.patches_m = look.patches_m;
-    out.rough_surfels = look.roughness * std::min(points, out.surface_m2 / (surfel_m * surfel_m));
     out.ground_m2 = look.box.ground_m2;
     out.box_voxels = std::min(look.box.m3(), looked.seen_m3) / (h * h * h);
     out.surface_voxels = looked.surface.area_m2(out.spacing_m) / (h * h);

@@ -25,13 +25,12 @@ struct Estimate {
     // With the device's threads on a machine without other work; and of the processor, with one.
     double seconds = 0, processor_s = 0;
     // What that is reckoned from, beside the above: pixels of frames; in one piece whether the scan
-    // is looked at from virtual views, its patches and ground (scan_look.h), its surfels by how
-    // rough they are, the voxels of its surface, and those of its box, or of what a single view
-    // sees there; the seconds of a piece of work here.
+    // is looked at from virtual views, its patches and ground (scan_look.h), the voxels of its
+    // surface, and those of its box, or of what a single view sees there; the seconds of a piece of
+    // work here.
     std::uint64_t pixels = 0;
     bool views = false;
-    double patches_m = 0, ground_m2 = 0, rough_surfels = 0, box_voxels = 0, surface_voxels = 0,
-           probe_s = 0;
+    double patches_m = 0, ground_m2 = 0, box_voxels = 0, surface_voxels = 0, probe_s = 0;
     // With a max_memory_bytes below it parse() refuses; what it may take as the options are; and,
     // where it would refuse, its words for that.
     std::uint64_t least_bytes = 0, allowed_bytes = 0;

@@ -29,11 +29,10 @@ import time
 KINDS = ['kitchen', 'bathroom', 'bedroom', 'living', 'office', 'shop', 'storage', 'corridor', 'precarious', 'tabletop',
          'library', 'meeting', 'lounge', 'laundry', 'depot', 'plain', 'varied']
 SAID = ['points', 'frames', 'pixels', 'surface_m2', 'tiled', 'cell_m', 'voxel_m', 'views', 'patches_m', 'ground_m2',
-        'rough_surfels', 'box_voxels', 'seconds', 'processor_s', 'probe_s', 'memory_bytes', 'least_bytes']
+        'box_voxels', 'seconds', 'processor_s', 'probe_s', 'memory_bytes', 'least_bytes']
 COLUMNS = ['seed', 'what', 'options', *SAID, 'wall_s', 'spent_s', 'peak_bytes', 'limit_bytes', 'limit_peak_bytes', 'limit']
 # As in host/scale/estimate.cpp, and parse_memory.h.
-PROBE_REFERENCE_S, PIXEL_S, TILED_POINT_S, TILED_CELL_S, LAYERS = 0.027, 6e-8, 0.27e-6, 5e-6, 2.3
-WALKED_M2 = 4
+PROBE_REFERENCE_S, LAYERS, WALKED_M2 = 0.027, 2.3, 4
 
 
 class Ran:
@@ -191,12 +190,10 @@ def loss(pairs):
     return sum(min(math.log(a / b) ** 2, 0.25) + 0.1 * abs(math.log(a / b)) for a, b in pairs) / len(pairs)
 
 
-def report(file, names, start, columns, truth, known=None):
-    """Fits and prints constants that the columns are multiplied with: their sum and what is known are a row's truth."""
-    known = known or [0] * len(truth)
-
+def report(file, names, start, columns, truth):
+    """Fits and prints constants that the columns are multiplied with: their sum is a row's truth."""
     def told(c):
-        return [sum(map(operator.mul, c, row)) + k for row, k in zip(columns, known)]
+        return [sum(map(operator.mul, c, row)) for row in columns]
 
     c = search(start, lambda c: loss(list(zip(told(c), truth))))
     values = [a / b for a, b in zip(told(c), truth)]
@@ -215,18 +212,16 @@ def fit(a):
     def surface(row):
         return row['surface_m2'] / row['voxel_m'] ** 2
 
-    report('parse_memory.h', ('fixed', 'point', 'voxel', 'patch_m', 'rough_surfel'), [0.2, 3e-6, 3e-6, 0.04, 2e-4],
-           [[1.0, r['points'], math.sqrt(surface(r) * r['box_voxels']), r['patches_m'], r['rough_surfels']] for r in whole],
-           reference_s(whole), [PIXEL_S * r['pixels'] for r in whole])
+    report('parse_memory.h', ('fixed', 'voxel'), [0.3, 7e-6],
+           [[1.0, math.sqrt(surface(r) * r['box_voxels'])] for r in whole], reference_s(whole))
     report('parse_memory.h', ('fixed', 'of_views', 'of_walks', 'a_point', 'a_surface_voxel', 'a_voxel', 'a_patch_m'),
            [40e6, 40e6, 40e6, 200, 1300, 6, 4e5],
            [[1.0, float(r['views']), min(1.0, r['ground_m2'] / WALKED_M2), r['points'], surface(r), r['box_voxels'],
              r['patches_m']] for r in whole], [r['peak_bytes'] for r in whole])
     if tiled:
-        known = [TILED_POINT_S * r['points'] +
-                 TILED_CELL_S * min(0.95 * r['points'], LAYERS * r['surface_m2'] / r['cell_m'] ** 2) for r in tiled]
-        report('estimate.cpp', ('tiled_fixed_s', 'tiled_m2_s'), [0.1, 0.02], [[1.0, r['surface_m2']] for r in tiled],
-               reference_s(tiled), known)
+        report('estimate.cpp', ('tiled_fixed_s', 'tiled_cell_s'), [1.5, 6e-6],
+               [[1.0, min(0.95 * r['points'], LAYERS * r['surface_m2'] / r['cell_m'] ** 2)] for r in tiled],
+               reference_s(tiled))
 
 
 def main():
