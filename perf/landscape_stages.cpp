@@ -45,8 +45,7 @@ std::vector<physics::Candidate> group_candidates(const std::vector<Vec3>& center
         Vec3 mean{};
         for (int m = first; m < first + members; ++m) {
             candidate.primitives.push_back(m);
-            for (std::size_t a = 0; a < 3; ++a)
-                mean[a] += center[static_cast<std::size_t>(m)][a] / members;
+            for (std::size_t a = 0; a < 3; ++a) mean[a] += center[m][a] / members;
         }
         candidate.body = {1, 0.01, 7, mean};
         for (const auto& [x, y] : {std::array{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}})

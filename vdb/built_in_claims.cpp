@@ -42,7 +42,7 @@ std::vector<Sheet> sheets_of(const VolumeView& view) {
     std::vector<Sheet> out(view.primitives());
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
-        if (p >= 0 && view.is_upright_sheet(p)) out[static_cast<std::size_t>(p)].cells.push_back(n);
+        if (p >= 0 && view.is_upright_sheet(p)) out[p].cells.push_back(n);
     }
     for (Sheet& sheet : out)
         if (!sheet.cells.empty()) find_bounds(cells, sheet);

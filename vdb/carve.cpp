@@ -248,7 +248,7 @@ void Carver::count(std::span<const std::uint64_t> leaves,
     for (std::size_t n = 0; n < leaves.size(); ++n) {
         const std::int32_t slot = e.slot[leaves[n]];
         if (slot < 0) continue;
-        const auto& from = e.voxels[static_cast<std::size_t>(slot)];
+        const auto& from = e.voxels[slot];
         std::copy(from.begin(), from.end(),
                   evidence.begin() + static_cast<std::ptrdiff_t>(n * 512));
     }
@@ -321,7 +321,7 @@ void Carver::judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence) 
         e.free_slots.pop_back();
     }
     e.kind[leaf] = Evidence::Kind::detailed;
-    e.voxels[static_cast<std::size_t>(e.slot[leaf])].assign(evidence.begin(), evidence.end());
+    e.voxels[e.slot[leaf]].assign(evidence.begin(), evidence.end());
 
     auto* state = g_.state->tree().touchLeaf(origin);
     for (openvdb::Index v = 0; v < 512; ++v) {

@@ -152,7 +152,7 @@ class FillLeaves {
             std::int32_t last = -1;
             for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
                 const std::int32_t p = label->getValue(voxel.pos());
-                if (p < 0 || p == last || !fills[static_cast<std::size_t>(p)]) continue;
+                if (p < 0 || p == last || !fills[p]) continue;
                 out.emplace_back(p, at);
                 last = p;
             }

@@ -54,7 +54,7 @@ class Bridging {
         return a >= 0 && b >= 0 && a != b && (axis == 2 || (view_.is_body(a) && view_.is_body(b)));
     }
     void add_gap(Voxel at, int axis, std::int32_t gap, std::int32_t before, std::int32_t behind) {
-        for (std::int32_t step = 1; step <= gap; ++step, ++at[static_cast<std::size_t>(axis)]) {
+        for (std::int32_t step = 1; step <= gap; ++step, ++at[axis]) {
             const std::int32_t back = gap + 1 - step;
             const bool first = step < back || (step == back && before < behind);
             candidates_.push_back({at, std::min(step, back), first ? before : behind});

@@ -28,7 +28,7 @@ std::vector<std::vector<Column>> columns_of(const VolumeView& view) {
     std::vector<std::vector<Column>> columns(view.primitives());
     for (std::size_t n = 0; n < cells.size(); ++n) {
         if (!view.is_body(cells.primitive[n])) continue;
-        std::vector<Column>& own = columns[static_cast<std::size_t>(cells.primitive[n])];
+        std::vector<Column>& own = columns[cells.primitive[n]];
         if (own.empty() || own.back().i != cells.i[n] || own.back().j != cells.j[n])
             own.push_back({cells.i[n], cells.j[n], cells.k[n]});
         own.back().top = cells.k[n];
@@ -56,8 +56,7 @@ std::vector<Claim> leg_claims(const VolumeView& view) {
             if (hidden > longest || !view.solid(next)) continue;
             const std::int32_t above = view.primitive(next);
             if (!view.is_body(above) || static_cast<std::size_t>(above) == leg) continue;
-            if (columns[static_cast<std::size_t>(above)].size() < least_wider * own.size())
-                continue;
+            if (columns[above].size() < least_wider * own.size()) continue;
             ++ending;
             for (std::int32_t k = c.top + 1; k < next[2]; ++k)
                 claims.push_back({{c.i, c.j, k}, static_cast<std::int32_t>(leg), Basis::leg});

@@ -106,7 +106,7 @@ class Extraction {
             const Vec3d along = transform_.indexToWorld(one) - corner;
             for (int d = 0; d < 3; ++d)
                 aligned_ = aligned_ && std::abs(along[d] - (a == d ? size[0] : 0)) < 1e-6 * size[0];
-            map_.space.corner_m[static_cast<std::size_t>(a)] = corner[a] * unit_m;
+            map_.space.corner_m[a] = corner[a] * unit_m;
         }
         map_.space.voxel_m = size[0] * unit_m;
     }

@@ -97,7 +97,7 @@ class Boxes {
             const auto leaf = g_.leaves.leaf_at(n);
             std::bitset<512> voxels;
             for (std::int32_t v = 0; v < 512; ++v) {
-                voxels[static_cast<std::size_t>(v)] = within.isValueOn(map_voxel(
+                voxels[v] = within.isValueOn(map_voxel(
                     {leaf[0] * 8 + (v >> 6), leaf[1] * 8 + (v >> 3 & 7), leaf[2] * 8 + (v & 7)}));
             }
             if (voxels.any()) set(leaf, voxels);
@@ -115,10 +115,8 @@ class Boxes {
         openvdb::Coord at;
         for (int d = 0; d < 3; ++d) {
             double p = 0;
-            for (int a = 0; a < 3; ++a)
-                p += rows[static_cast<std::size_t>(a)][static_cast<std::size_t>(d)] *
-                     (voxel[static_cast<std::size_t>(a)] + 0.5) * g_.frame.voxel_m;
-            const double index = (p - map_.corner_m[static_cast<std::size_t>(d)]) / map_.voxel_m;
+            for (int a = 0; a < 3; ++a) p += rows[a][d] * (voxel[a] + 0.5) * g_.frame.voxel_m;
+            const double index = (p - map_.corner_m[d]) / map_.voxel_m;
             at[d] = static_cast<std::int32_t>(std::floor(std::clamp(index, -2e9, 2e9)));
         }
         return at;

@@ -39,7 +39,7 @@ std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
             std::uint32_t cell = 0;
             if (state->isValueOn(v)) {
                 const std::int32_t p = label->getValue(v);
-                const bool votes = p >= 0 && fills[static_cast<std::size_t>(p)];
+                const bool votes = p >= 0 && fills[p];
                 cell = votes ? static_cast<std::uint32_t>(p) + 3 : 2;
             }
             cells[n * 512 + v] = cell;

@@ -116,7 +116,7 @@ class Settling {
     static constexpr std::array<std::array<std::int32_t, 2>, 4> sides{
         {{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
-    Shape& shape(std::int32_t p) { return shapes_[static_cast<std::size_t>(p)]; }
+    Shape& shape(std::int32_t p) { return shapes_[p]; }
 
     void add_to_shape(std::size_t n) {
         if (!view_.is_body(cells_.primitive[n])) return;

@@ -48,7 +48,7 @@ double median(const std::vector<double>& values) {
         return sorted[middle];
     }
     std::vector<std::size_t> count(static_cast<std::size_t>(*high - *low) + 1);
-    for (const double value : values) ++count[static_cast<std::size_t>(value - *low)];
+    for (const double value : values) ++count[value - *low];
     std::size_t at = 0, below = 0;
     while ((below += count[at]) <= middle) ++at;
     return *low + static_cast<double>(at);
@@ -340,7 +340,7 @@ void VoxelScene::relabel(std::span<const std::int32_t> number) {
                                                   " is not among the " +
                                                   std::to_string(number.size()) + " given");
             }
-            voxel.setValue(number[static_cast<std::size_t>(*voxel)]);
+            voxel.setValue(number[*voxel]);
         }
     }
 }

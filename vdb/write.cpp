@@ -183,8 +183,7 @@ void VoxelScene::write(const std::filesystem::path& path) const {
             const std::int32_t p = label->getValue(voxel.pos());
             const bool known = p >= 0 && static_cast<std::size_t>(p) < g.object_of_primitive.size();
             to_primitive->setValueOn(voxel.pos(), p);
-            to_object->setValueOn(voxel.pos(),
-                                  known ? g.object_of_primitive[static_cast<std::size_t>(p)] : -1);
+            to_object->setValueOn(voxel.pos(), known ? g.object_of_primitive[p] : -1);
         }
     }
     openvdb::GridPtrVec grids;

@@ -212,7 +212,7 @@ std::uint64_t Volume::fill(device::Device& device, unsigned votes,
         require(
             label >= 0 && label < labels_, "fill",
             "hollow label " + std::to_string(label) + " is none of the " + std::to_string(labels_));
-        options.roles[static_cast<std::size_t>(label)] = Role::wall;
+        options.roles[label] = Role::wall;
     }
     return vdb::fill(device, *scene_, options);
 }

@@ -38,7 +38,7 @@ const Object& chosen(const Scene& scene, std::int64_t id) {
                                           ": the scene has objects 0 to " +
                                           std::to_string(scene.objects.size() - 1));
     }
-    const Object& object = scene.objects[static_cast<std::size_t>(id)];
+    const Object& object = scene.objects[id];
     if (object.grounded) {
         throw Error(ErrorKind::usage,
                     "--object " + std::to_string(id) +

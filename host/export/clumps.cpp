@@ -37,7 +37,7 @@ std::vector<Clump> clumps_of(const Scene& scene, double voxel_m) {
         const double slight_m3 = solid_m3 * (object.grounded ? slight_of_ground : slight_of_object);
         std::map<Block, std::size_t> clump_of;
         for (const std::int32_t p : object.primitives) {
-            const Primitive& primitive = scene.primitives[static_cast<std::size_t>(p)];
+            const Primitive& primitive = scene.primitives[p];
             const bool crumb = object.primitives.size() > many_primitives &&
                                primitive.volume_m3 < crumb_voxels * voxel_m3;
             if (crumb) {

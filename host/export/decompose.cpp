@@ -164,9 +164,7 @@ class Decomposition {
     std::vector<std::vector<Vec3>> corners(const Piece& piece, std::size_t axis,
                                            std::span<const std::size_t> slab_of_layer) const {
         const auto slab_of = [&](const Voxel& at) {
-            return slab_of_layer.empty()
-                       ? 0
-                       : slab_of_layer[static_cast<std::size_t>(at[axis] - piece.box.low[axis])];
+            return slab_of_layer.empty() ? 0 : slab_of_layer[at[axis] - piece.box.low[axis]];
         };
         std::vector<std::vector<Vec3>> out(slab_of(piece.box.high) + 1);
         for (const std::size_t n : piece.cells) {
@@ -208,8 +206,7 @@ class Decomposition {
     std::vector<std::size_t> places(const Piece& piece, std::size_t axis) const {
         const auto layers = piece.box.layers(axis);
         std::vector<std::int64_t> count(layers, 0);
-        for (const std::size_t n : piece.cells)
-            ++count[static_cast<std::size_t>(grid_[n].at[axis] - piece.box.low[axis])];
+        for (const std::size_t n : piece.cells) ++count[grid_[n].at[axis] - piece.box.low[axis]];
         std::vector<std::pair<std::int64_t, std::size_t>> changes;
         for (std::size_t n = 1; n < layers; ++n)
             changes.emplace_back(-std::abs(count[n] - count[n - 1]), n);
@@ -245,8 +242,7 @@ class Decomposition {
                                                         out.first.begin());
         std::vector<double> solid(out.first.size() + 1, 0);
         for (const std::size_t n : piece.cells)
-            ++solid[slab_of_layer[static_cast<std::size_t>(grid_[n].at[axis] -
-                                                           piece.box.low[axis])]];
+            ++solid[slab_of_layer[grid_[n].at[axis] - piece.box.low[axis]]];
         out.corner = corners(piece, axis, slab_of_layer);
         std::vector<Vec3> points;
         double solid_below = 0;
@@ -331,7 +327,7 @@ std::vector<std::vector<Cell>> cells_of(const SolidScene& solids, std::span<cons
     std::vector<std::vector<Cell>> out(clumps.size());
     const auto add = [&](std::int32_t p, const Cell& cell) {
         if (p < 0) return;
-        const std::size_t clump = clump_of[static_cast<std::size_t>(p)];
+        const std::size_t clump = clump_of[p];
         if (clump != none) out[clump].push_back(cell);
     };
     const SolidCells& cells = solids.cells();

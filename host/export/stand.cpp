@@ -19,7 +19,7 @@ constexpr double level_cosine = 0.9;  // of a side that carries
 template <class Use>
 void each_footing(std::vector<Body>& bodies, Body& body, double within_m, const Use& use) {
     for (const std::int32_t carrier : body.carried_by) {
-        for (const ConvexPart& below : bodies[static_cast<std::size_t>(carrier)].parts) {
+        for (const ConvexPart& below : bodies[carrier].parts) {
             for (ConvexPart& part : body.parts) {
                 if (!near(part, below, within_m)) continue;
                 const Apart lie = apart(below, part);

@@ -33,7 +33,7 @@ SurfaceColours::SurfaceColours(const ScenePoints& points, const SolidCells& cell
         index.push_back(moved(cell));
         const std::int32_t p = cells.primitive[n];
         const bool known = p >= 0 && static_cast<std::size_t>(p) < object_of_primitive.size();
-        object_.push_back(known ? object_of_primitive[static_cast<std::size_t>(p)] : -1);
+        object_.push_back(known ? object_of_primitive[p] : -1);
     }
     report::CellColours colours(index.size());
     for (std::size_t i = 0; i < points.x.size(); ++i) {

@@ -25,7 +25,7 @@ double BoostedTrees::log_odds(std::span<const float> row) const {
     for (const std::uint32_t root : table_.roots) {
         const TreeNode* node = &table_.nodes[root];
         while (node->feature >= 0) {
-            const float value = row[column_[static_cast<std::size_t>(node->feature)]];
+            const float value = row[column_[node->feature]];
             const bool left = std::isnan(value) ? node->missing_left : value <= node->threshold;
             node = &table_.nodes[left ? node->left : node->right];
         }

@@ -35,7 +35,7 @@ std::vector<Storey> storeys_of(const Surfels& s, const Vec3& up) {
         return find_storeys({}, 0, histogram_step_m);
     std::vector<double> area(static_cast<std::size_t>((high - low) / histogram_step_m) + 1, 0.0);
     for (std::size_t n = 0; n < s.size(); ++n)
-        area[static_cast<std::size_t>((height(n) - low) / histogram_step_m)] += s.area_m2;
+        area[(height(n) - low) / histogram_step_m] += s.area_m2;
     return find_storeys(area, low, histogram_step_m);
 }
 

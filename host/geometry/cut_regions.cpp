@@ -19,7 +19,7 @@ CutRegions::CutRegions(const Regions& all)
       flush(all.regions.size()),
       ledges(all.regions.size()) {
     for (std::uint32_t i = 0; i < all.label.size(); ++i)
-        if (all.label[i] >= 0) members[static_cast<std::size_t>(all.label[i])].push_back(i);
+        if (all.label[i] >= 0) members[all.label[i]].push_back(i);
 }
 
 bool CutRegions::parted(std::size_t a, std::size_t b) const {

@@ -24,8 +24,7 @@ class FourfoldHistogram {
     // Within so many bins of one.
     double around(int bin, int reach) const {
         double sum = 0;
-        for (int d = -reach; d <= reach; ++d)
-            sum += bins_[static_cast<std::size_t>((bin + d + count) % count)];
+        for (int d = -reach; d <= reach; ++d) sum += bins_[(bin + d + count) % count];
         return sum;
     }
     // The first bin with the most weight within so many bins of it.

@@ -24,10 +24,10 @@ Borders borders(const Surfels& s, const std::vector<std::int32_t>& label,
     Borders out;
     for (std::size_t n = 0; n < s.size(); ++n) {
         const std::int32_t a = label[n];
-        if (a < 0 || solid[static_cast<std::size_t>(a)]) continue;
+        if (a < 0 || solid[a]) continue;
         for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
             const std::int32_t b = label[s.neighbours[k]];
-            if (b >= 0 && solid[static_cast<std::size_t>(b)]) ++out[{a, b}];
+            if (b >= 0 && solid[b]) ++out[{a, b}];
         }
     }
     return out;
@@ -39,9 +39,7 @@ std::vector<std::uint32_t> steps_from_solids(const Surfels& s,
                                              const std::vector<std::int32_t>& label,
                                              const std::vector<bool>& solid) {
     std::vector<std::uint32_t> steps(s.size(), 0), queue;
-    const auto is_solid = [&](std::uint32_t n) {
-        return label[n] >= 0 && solid[static_cast<std::size_t>(label[n])];
-    };
+    const auto is_solid = [&](std::uint32_t n) { return label[n] >= 0 && solid[label[n]]; };
     for (std::uint32_t n = 0; n < s.size(); ++n) {
         if (is_solid(n)) queue.push_back(n);
     }
@@ -91,7 +89,7 @@ void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& 
         const std::int32_t whole = *fragments.begin();
         for (const std::int32_t f : fragments)
             joined.join(static_cast<std::size_t>(whole), static_cast<std::size_t>(f));
-        solid[static_cast<std::size_t>(whole)] = true;
+        solid[whole] = true;
         for (const std::uint32_t n : piece)
             if (label[n] < 0) label[n] = whole;
     }
@@ -112,7 +110,7 @@ void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& 
 bool explained(const Surfels& s, std::uint32_t n, const Regions& faces,
                const std::set<std::int32_t>& among) {
     return std::ranges::any_of(among, [&](std::int32_t f) {
-        const Region& face = faces.regions[static_cast<std::size_t>(f)];
+        const Region& face = faces.regions[f];
         return std::abs(distance(face.model, position(s, n))) <=
                own_surface_m(face.residual_m, s.cell_m);
     });
@@ -127,8 +125,7 @@ void keep_small_things(const Surfels& s, std::vector<bool>& solid, const Primiti
     const Regions& faces = primitives.faces;
     std::vector<std::vector<std::uint32_t>> members(solid.size());
     for (std::uint32_t n = 0; n < s.size(); ++n)
-        if (label[n] >= 0 && !solid[static_cast<std::size_t>(label[n])])
-            members[static_cast<std::size_t>(label[n])].push_back(n);
+        if (label[n] >= 0 && !solid[label[n]]) members[label[n]].push_back(n);
     std::vector<std::size_t> things;
     for (std::size_t p = 0; p < members.size(); ++p) {
         if (members[p].size() < least_region) continue;
@@ -136,8 +133,7 @@ void keep_small_things(const Surfels& s, std::vector<bool>& solid, const Primiti
         for (const std::uint32_t n : members[p])
             for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
                 const std::uint32_t m = s.neighbours[k];
-                if (label[m] >= 0 && solid[static_cast<std::size_t>(label[m])] &&
-                    faces.label[m] >= 0)
+                if (label[m] >= 0 && solid[label[m]] && faces.label[m] >= 0)
                     around.insert(faces.label[m]);
             }
         const auto unexplained = std::ranges::count_if(
@@ -177,7 +173,7 @@ void absorb_fragments(const Surfels& surfels, std::uint64_t least_surfels,
                       PrimitiveSet& primitives) {
     std::vector<std::uint64_t> size(primitives.model.size(), 0);
     for (const std::int32_t l : primitives.label) {
-        if (l >= 0) ++size[static_cast<std::size_t>(l)];
+        if (l >= 0) ++size[l];
     }
     std::vector<bool> solid;
     for (const std::uint64_t s : size) solid.push_back(s >= least_surfels);
@@ -205,7 +201,7 @@ void absorb_fragments(const Surfels& surfels, std::uint64_t least_surfels,
         kept.model.push_back(std::move(primitives.model[p]));
         kept.regions.push_back(std::move(primitives.regions[p]));
     }
-    for (std::int32_t& l : primitives.label) l = l < 0 ? -1 : number[static_cast<std::size_t>(l)];
+    for (std::int32_t& l : primitives.label) l = l < 0 ? -1 : number[l];
     while (grow_labels(surfels, primitives.label)) {
     }
     primitives.model = std::move(kept.model);

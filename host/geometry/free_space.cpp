@@ -50,13 +50,11 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
         return all;
     };
     while (cells() > most_free_cells) cell_m_ *= 1.25;
-    for (int a = 0; a < 3; ++a)
-        size_[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(extent[a] / cell_m_) + 1;
+    for (int a = 0; a < 3; ++a) size_[a] = static_cast<std::int64_t>(extent[a] / cell_m_) + 1;
     cell_.assign(static_cast<std::size_t>(cells()), 0);
     const auto is_stray = [&](std::size_t i) { return !bounds.contains(s.x[i], s.y[i], s.z[i]); };
     for (std::size_t i = 0; i < s.size(); ++i)
-        if (!is_stray(i))
-            cell_[static_cast<std::size_t>(index(in_cells(position(s, i))))] = occupied;
+        if (!is_stray(i)) cell_[index(in_cells(position(s, i)))] = occupied;
     const std::size_t step = s.size() / most_lines + 1;
     threads.each((s.size() + step - 1) / step, 256, [&](std::size_t line) {
         const std::size_t i = line * step;
@@ -75,7 +73,7 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
                 const std::int64_t at =
                     index(in_cells(position(s, i) + side * Eigen::Vector3d::Unit(a)));
                 if (at < 0) continue;
-                const std::atomic_ref beside(cell_[static_cast<std::size_t>(at)]);
+                const std::atomic_ref beside(cell_[at]);
                 if (beside.load(std::memory_order_relaxed) == is_free)
                     beside.store(0, std::memory_order_relaxed);
             }
@@ -84,8 +82,7 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
 
 std::int64_t FreeSpace::index(const Eigen::Vector3d& cells) const {
     for (int a = 0; a < 3; ++a)
-        if (!(cells[a] >= 0 && cells[a] < static_cast<double>(size_[static_cast<std::size_t>(a)])))
-            return -1;
+        if (!(cells[a] >= 0 && cells[a] < static_cast<double>(size_[a]))) return -1;
     return (static_cast<std::int64_t>(cells[0]) * size_[1] + static_cast<std::int64_t>(cells[1])) *
                size_[2] +
            static_cast<std::int64_t>(cells[2]);
@@ -113,7 +110,7 @@ void FreeSpace::cross(const Eigen::Vector3d& eye, const Eigen::Vector3d& p) {
 
 bool FreeSpace::at(const Eigen::Vector3d& p) const {
     const std::int64_t i = known() ? index(in_cells(p)) : -1;
-    return i >= 0 && cell_[static_cast<std::size_t>(i)] == is_free;
+    return i >= 0 && cell_[i] == is_free;
 }
 
 bool FreeSpace::between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
@@ -123,7 +120,7 @@ bool FreeSpace::between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) cons
     int free = 0;
     for (double k = 1; k < steps; ++k) {
         const std::int64_t at = index(from + k * step);
-        free += at >= 0 && cell_[static_cast<std::size_t>(at)] == is_free;
+        free += at >= 0 && cell_[at] == is_free;
         if (free >= least_free) return true;
     }
     return false;

@@ -120,8 +120,7 @@ double covered_by_both(const std::array<std::vector<SidePoint>, 2>& parts, doubl
     const auto bins = static_cast<std::size_t>((last - first) / cell_m) + 1;
     std::array<std::vector<bool>, 2> covered{std::vector<bool>(bins), std::vector<bool>(bins)};
     for (std::size_t above = 0; above < 2; ++above)
-        for (const SidePoint& p : parts[above])
-            covered[above][static_cast<std::size_t>((p.along - first) / cell_m)] = true;
+        for (const SidePoint& p : parts[above]) covered[above][(p.along - first) / cell_m] = true;
     std::size_t both = 0;
     for (std::size_t b = 0; b < bins; ++b) both += covered[0][b] && covered[1][b];
     return static_cast<double>(both) / static_cast<double>(bins);

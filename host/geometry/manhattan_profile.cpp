@@ -62,7 +62,7 @@ class Slabs {
             enclosing += pair * faces * lean(b);
         }
         for (std::size_t n = 0; n < normals_.size(); ++n)
-            if (near_[n] && large[static_cast<std::size_t>(at_[n])]) holds[n] = true;
+            if (near_[n] && large[at_[n]]) holds[n] = true;
     }
 
   private:

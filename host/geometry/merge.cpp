@@ -47,29 +47,28 @@ class Merger {
     PrimitiveSet result() {
         std::vector<std::uint64_t> size(members_.size(), 0);
         for (const std::int32_t label : r_.label)
-            if (label >= 0) ++size[static_cast<std::size_t>(root(label))];
+            if (label >= 0) ++size[root(label)];
         std::vector<std::int32_t> order;
         for (std::size_t k = 0; k < size.size(); ++k)
             if (size[k] > 0) order.push_back(static_cast<std::int32_t>(k));
-        std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-            return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)];
-        });
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::int32_t a, std::int32_t b) { return size[a] > size[b]; });
         PrimitiveSet out;
         out.faces = r_;
         out.ledges = cuts_.ledges;
         std::vector<std::int32_t> id(size.size(), -1);
         for (const std::int32_t k : order) {
-            id[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(out.regions.size());
-            auto regions = members_[static_cast<std::size_t>(k)];
+            id[k] = static_cast<std::int32_t>(out.regions.size());
+            auto regions = members_[k];
             std::sort(regions.begin(), regions.end());
             const bool single = regions.size() == 1;
-            const int degree = r_.regions[static_cast<std::size_t>(k)].model.degree;
+            const int degree = r_.regions[k].model.degree;
             out.model.push_back(!single ? "merged" : degree == 1 ? "plane" : "quadric");
             out.regions.push_back(std::move(regions));
         }
         out.label.resize(r_.label.size(), -1);
         for (std::size_t i = 0; i < r_.label.size(); ++i)
-            if (r_.label[i] >= 0) out.label[i] = id[static_cast<std::size_t>(root(r_.label[i]))];
+            if (r_.label[i] >= 0) out.label[i] = id[root(r_.label[i])];
         return out;
     }
 
@@ -119,8 +118,8 @@ class Merger {
     void join(std::int32_t a, std::int32_t b) {
         if (b < a) std::swap(a, b);
         sets_.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
-        auto& from = members_[static_cast<std::size_t>(b)];
-        auto& to = members_[static_cast<std::size_t>(a)];
+        auto& from = members_[b];
+        auto& to = members_[a];
         std::vector<std::int32_t> both;
         std::merge(from.begin(), from.end(), to.begin(), to.end(), std::back_inserter(both),
                    [&](std::int32_t i, std::int32_t j) {
@@ -133,8 +132,7 @@ class Merger {
     // Whether the merged set of two would have at most this concavity: the mean over pairs of
     // regions, each by its size. Large regions come first: they often settle it.
     bool convex(std::int32_t a, std::int32_t b, double most) {
-        const auto &of_a = members_[static_cast<std::size_t>(a)],
-                   &of_b = members_[static_cast<std::size_t>(b)];
+        const auto &of_a = members_[a], &of_b = members_[b];
         const double all = surfels(of_a) * surfels(of_b);
         double sum = 0, left = all;
         facts_.threads().poll();
@@ -149,9 +147,7 @@ class Merger {
         return sum <= most * all;
     }
 
-    double surfels(std::int32_t k) const {
-        return static_cast<double>(r_.regions[static_cast<std::size_t>(k)].surfels);
-    }
+    double surfels(std::int32_t k) const { return static_cast<double>(r_.regions[k].surfels); }
     double surfels(const std::vector<std::int32_t>& set) const {
         double sum = 0;
         for (const std::int32_t k : set) sum += surfels(k);

@@ -151,15 +151,13 @@ class Cutter {
     }
 
     // Whether a face of the solid was cut since: what else is known of it may no longer hold.
-    bool stale(std::size_t k) const {
-        return k < solid_.size() && stale_[static_cast<std::size_t>(solid_[k])];
-    }
+    bool stale(std::size_t k) const { return k < solid_.size() && stale_[solid_[k]]; }
 
     // The faces of the solid that a neighbour belongs to, but `k`.
     std::vector<std::size_t> faces_with(std::size_t neighbour, std::size_t k) const {
         if (neighbour >= solid_.size()) return {neighbour};
         std::vector<std::size_t> out;
-        for (const std::size_t f : faces_[static_cast<std::size_t>(solid_[neighbour])])
+        for (const std::size_t f : faces_[solid_[neighbour]])
             if (f != k && region(f).model.degree == 1 && region(f).surfels >= least_piece)
                 out.push_back(f);
         return out;
@@ -287,7 +285,7 @@ class Cutter {
     }
 
     void apply(std::size_t k, Division d) {
-        if (k < solid_.size()) stale_[static_cast<std::size_t>(solid_[k])] = true;
+        if (k < solid_.size()) stale_[solid_[k]] = true;
         const std::size_t fresh = out_.take_out(s_, k, std::move(d.outside));
         out_.flush[k].emplace_back(out_.count, false);
         out_.flush[fresh].emplace_back(out_.count, true);

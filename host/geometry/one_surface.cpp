@@ -53,9 +53,7 @@ bool coplanar(const Regions& regions, const std::vector<RegionSamples>& samples,
 
 bool ledge_between(const PrimitiveSet& primitives, std::size_t i, std::size_t j) {
     const std::int32_t a = primitives.faces.label[i], b = primitives.faces.label[j];
-    return a >= 0 && b >= 0 &&
-           on_two_sides(primitives.ledges[static_cast<std::size_t>(a)],
-                        primitives.ledges[static_cast<std::size_t>(b)]);
+    return a >= 0 && b >= 0 && on_two_sides(primitives.ledges[a], primitives.ledges[b]);
 }
 
 bool in_one_surface(const Surfels& surfels, const PrimitiveSet& primitives, std::size_t i,
@@ -63,8 +61,7 @@ bool in_one_surface(const Surfels& surfels, const PrimitiveSet& primitives, std:
     const Regions& regions = primitives.faces;
     const std::int32_t a = regions.label[i], b = regions.label[j];
     if (a < 0 || b < 0) return false;
-    const Region &ra = regions.regions[static_cast<std::size_t>(a)],
-                 &rb = regions.regions[static_cast<std::size_t>(b)];
+    const Region &ra = regions.regions[a], &rb = regions.regions[b];
     if (a == b) return true;
     if (ledge_between(primitives, i, j)) return false;
     const Eigen::Vector3d p = position(surfels, i), q = position(surfels, j);

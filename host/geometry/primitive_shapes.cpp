@@ -63,7 +63,7 @@ PrimitiveShapes primitive_shapes(const SurfaceSamples& s, std::size_t primitives
         std::size_t last = first;
         while (last < s.size() && s.primitive[last] == s.primitive[first]) ++last;
         if (s.primitive[first] >= 0) {
-            PrimitiveShape& p = out.of[static_cast<std::size_t>(s.primitive[first])];
+            PrimitiveShape& p = out.of[s.primitive[first]];
             p.first = first;
             p.last = last;
         }

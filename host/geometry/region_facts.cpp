@@ -35,11 +35,11 @@ void RegionFacts::update(const std::vector<std::int32_t>& changed) {
 
 void RegionFacts::forget(std::int32_t k) {
     const auto of_k = [&](const Pair& pair) { return pair.first == k || pair.second == k; };
-    for (const std::int32_t other : touching_[static_cast<std::size_t>(k)]) {
+    for (const std::int32_t other : touching_[k]) {
         borders_.erase(std::minmax(k, other));
-        touching_[static_cast<std::size_t>(other)].erase(k);
+        touching_[other].erase(k);
     }
-    touching_[static_cast<std::size_t>(k)].clear();
+    touching_[k].clear();
     std::erase_if(face_pieces_, of_k);
     std::erase_if(concavity_, [&](const auto& entry) { return of_k(entry.first); });
 }
@@ -51,17 +51,16 @@ void RegionFacts::find_borders(const std::vector<std::int32_t>& changed) {
         auto operator<=>(const Touch&) const = default;
     };
     std::vector<bool> among(cuts_.members.size(), false);
-    for (const std::int32_t k : changed) among[static_cast<std::size_t>(k)] = true;
+    for (const std::int32_t k : changed) among[k] = true;
     const std::vector<std::int32_t>& label = cuts_.regions.label;
     std::vector<Touch> touches;
     for (const std::int32_t a : changed)
-        for (const std::uint32_t i : cuts_.members[static_cast<std::size_t>(a)])
+        for (const std::uint32_t i : cuts_.members[a])
             for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
                 const std::uint32_t j = s_.neighbours[e];
                 const std::int32_t b = label[j];
                 if (b > a) touches.push_back({a, b, i, j});
-                if (b >= 0 && b < a && !among[static_cast<std::size_t>(b)])
-                    touches.push_back({b, a, j, i});
+                if (b >= 0 && b < a && !among[b]) touches.push_back({b, a, j, i});
             }
     std::sort(touches.begin(), touches.end());
     std::vector<Border*> fresh;
@@ -70,8 +69,8 @@ void RegionFacts::find_borders(const std::vector<std::int32_t>& changed) {
             Border& border = borders_[{t.a, t.b}];
             border.a = t.a;
             border.b = t.b;
-            touching_[static_cast<std::size_t>(t.a)].insert(t.b);
-            touching_[static_cast<std::size_t>(t.b)].insert(t.a);
+            touching_[t.a].insert(t.b);
+            touching_[t.b].insert(t.a);
             fresh.push_back(&border);
         }
         fresh.back()->pairs.emplace_back(t.i, t.j);
@@ -91,7 +90,7 @@ void RegionFacts::find_borders(const std::vector<std::int32_t>& changed) {
 
 void RegionFacts::find_face_pieces(const std::vector<std::int32_t>& changed) {
     std::vector<bool> among(cuts_.members.size(), false);
-    for (const std::int32_t k : changed) among[static_cast<std::size_t>(k)] = true;
+    for (const std::int32_t k : changed) among[k] = true;
     // The widest gap that is looked into, and a little for rounding.
     const double reach = 1.001 * (widest_face_gap_m + s_.cell_m);
     std::vector<std::vector<std::int32_t>> found(changed.size());

@@ -39,7 +39,7 @@ SightLines::SightLines(const SurfaceSamples& s) : cell_m_(std::max(finest_m, 1.5
             return std::min(static_cast<std::int64_t>(c[static_cast<Eigen::Index>(a)]),
                             size_[a] - 1);
         };
-        cell_[static_cast<std::size_t>((at(0) * size_[1] + at(1)) * size_[2] + at(2))] = true;
+        cell_[(at(0) * size_[1] + at(1)) * size_[2] + at(2)] = true;
     }
 }
 
@@ -50,7 +50,7 @@ bool SightLines::occupied(const Eigen::Vector3d& p) const {
         c[a] = static_cast<std::int64_t>(std::floor((p[axis] - low_[axis]) / cell_m_));
         if (c[a] < 0 || c[a] >= size_[a]) return false;
     }
-    return cell_[static_cast<std::size_t>((c[0] * size_[1] + c[1]) * size_[2] + c[2])];
+    return cell_[(c[0] * size_[1] + c[1]) * size_[2] + c[2]];
 }
 
 double SightLines::met_m(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,

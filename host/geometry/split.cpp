@@ -131,7 +131,7 @@ void refit_regions(const Surfels& surfels, const SplitScale& scale, ThreadPool& 
     for (std::size_t i = 0; i < surfels.size(); ++i) {
         const std::int32_t label = regions.label[i];
         if (label < 0) continue;
-        auto& list = members[static_cast<std::size_t>(label)];
+        auto& list = members[label];
         if (list.empty()) order.push_back(label);
         list.push_back(static_cast<std::uint32_t>(i));
     }

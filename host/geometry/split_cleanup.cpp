@@ -42,9 +42,7 @@ class Cleaner {
     }
 
   private:
-    const AlgebraicModel& model(std::int32_t label) const {
-        return r_.regions[static_cast<std::size_t>(label)].model;
-    }
+    const AlgebraicModel& model(std::int32_t label) const { return r_.regions[label].model; }
 
     // How badly a model explains a surfel: distance in tolerances, plus the angle where it is
     // beyond what noise explains. 1 is the bound of growing.
@@ -127,7 +125,7 @@ class Cleaner {
     void absorb_small() {
         std::vector<std::vector<std::uint32_t>> members(r_.regions.size());
         for (std::uint32_t i = 0; i < s_.size(); ++i)
-            if (r_.label[i] >= 0) members[static_cast<std::size_t>(r_.label[i])].push_back(i);
+            if (r_.label[i] >= 0) members[r_.label[i]].push_back(i);
         std::vector<std::int32_t> order;
         for (std::size_t k = 0; k < members.size(); ++k)
             if (members[k].size() < absorbed_below) order.push_back(static_cast<std::int32_t>(k));
@@ -135,7 +133,7 @@ class Cleaner {
             return members[std::size_t(a)].size() < members[std::size_t(b)].size();
         });
         for (const std::int32_t k : order) {
-            auto& mine = members[static_cast<std::size_t>(k)];
+            auto& mine = members[k];
             std::map<std::int32_t, std::uint32_t> touches;
             for (const std::uint32_t i : mine)
                 for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
@@ -151,7 +149,7 @@ class Cleaner {
                 if (cost < best_cost) best_cost = cost, best = other;
             }
             if (best < 0) continue;
-            auto& theirs = members[static_cast<std::size_t>(best)];
+            auto& theirs = members[best];
             for (const std::uint32_t i : mine) r_.label[i] = best;
             theirs.insert(theirs.end(), mine.begin(), mine.end());
             mine.clear();

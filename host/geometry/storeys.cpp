@@ -25,18 +25,16 @@ std::vector<Level> find_levels(const std::vector<double>& area, double low, doub
     const auto reach =
         static_cast<std::ptrdiff_t>(std::max(1.0, std::round(level_spread_m / step)));
     const auto count = static_cast<std::ptrdiff_t>(area.size());
-    const auto at = [](const std::vector<double>& values, std::ptrdiff_t n) {
-        return values[static_cast<std::size_t>(n)];
-    };
+    const auto at = [](const std::vector<double>& values, std::ptrdiff_t n) { return values[n]; };
     std::vector<double> window(area.size(), 0.0), middle(area.size(), 0.0);
     for (std::ptrdiff_t n = 0; n < count; ++n) {
         double moment = 0;
         const std::ptrdiff_t last = std::min(count - 1, n + reach);
         for (std::ptrdiff_t m = std::max<std::ptrdiff_t>(0, n - reach); m <= last; ++m) {
-            window[static_cast<std::size_t>(n)] += at(area, m);
+            window[n] += at(area, m);
             moment += at(area, m) * (low + (static_cast<double>(m) + 0.5) * step);
         }
-        if (at(window, n) > 0) middle[static_cast<std::size_t>(n)] = moment / at(window, n);
+        if (at(window, n) > 0) middle[n] = moment / at(window, n);
     }
     const double most = window.empty() ? 0 : *std::ranges::max_element(window);
     std::vector<Level> levels;

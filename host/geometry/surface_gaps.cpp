@@ -139,9 +139,7 @@ GapPoints close_gaps(const Surfels& s, std::span<const std::int32_t> face,
     for (const std::int32_t p : primitive) primitives = std::max(primitives, p + 1);
     std::vector<std::vector<std::uint32_t>> members(static_cast<std::size_t>(primitives));
     for (std::size_t n = 0; n < s.size(); ++n)
-        if (primitive[n] >= 0)
-            members[static_cast<std::size_t>(primitive[n])].push_back(
-                static_cast<std::uint32_t>(n));
+        if (primitive[n] >= 0) members[primitive[n]].push_back(static_cast<std::uint32_t>(n));
     std::vector<GapPoints> closed(members.size());
     pool.each(members.size(), 1, [&](std::size_t p) {
         closed[p] = close_primitive(s, face, primitive, members[p], step_m);

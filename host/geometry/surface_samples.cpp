@@ -123,7 +123,7 @@ KeyedPoints keyed_points(const CloudView& cloud, std::span<const std::int32_t> p
     std::vector<std::ptrdiff_t> next(out.first.begin(), out.first.end() - 1);
     std::vector<std::uint32_t> order(cloud.size());
     for (std::size_t n = 0; n < cloud.size(); ++n)
-        order[static_cast<std::size_t>(next[place(n)]++)] = static_cast<std::uint32_t>(n);
+        order[next[place(n)]++] = static_cast<std::uint32_t>(n);
     out.key.resize(cloud.size());
     threads.each(order.size(), sample_chunk, [&](std::size_t m) {
         const std::uint32_t n = order[m];
@@ -232,11 +232,11 @@ void sort_by_primitive(SurfaceSamples& samples) {
     std::int32_t most = -1;
     for (const std::int32_t p : primitive) most = std::max(most, p);
     std::vector<std::size_t> next(static_cast<std::size_t>(most) + 3, 0);
-    for (const std::int32_t p : primitive) ++next[static_cast<std::size_t>(p + 2)];
+    for (const std::int32_t p : primitive) ++next[p + 2];
     std::partial_sum(next.begin(), next.end(), next.begin());
     std::vector<std::uint32_t> order(primitive.size());
     for (std::size_t n = 0; n < primitive.size(); ++n)
-        order[next[static_cast<std::size_t>(primitive[n] + 1)]++] = static_cast<std::uint32_t>(n);
+        order[next[primitive[n] + 1]++] = static_cast<std::uint32_t>(n);
     const auto sort = [&](auto& values) {
         std::remove_reference_t<decltype(values)> sorted;
         sorted.reserve(order.size());

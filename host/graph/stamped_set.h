@@ -19,9 +19,9 @@ class StampedSet {
         clear();
         if (stamp_.size() < size) stamp_.resize(size);
     }
-    bool has(std::int32_t i) const { return stamp_[static_cast<std::size_t>(i)] == now_; }
+    bool has(std::int32_t i) const { return stamp_[i] == now_; }
     bool add(std::int32_t i) {  // whether it is new
-        return std::exchange(stamp_[static_cast<std::size_t>(i)], now_) != now_;
+        return std::exchange(stamp_[i], now_) != now_;
     }
 
   private:

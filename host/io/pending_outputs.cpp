@@ -79,7 +79,7 @@ int add_pending(const std::filesystem::path& folder, int parents) noexcept {
 }
 
 void forget_pending(int slot) noexcept {
-    if (slot >= 0) slots[static_cast<std::size_t>(slot)].state.store(free_slot);
+    if (slot >= 0) slots[slot].state.store(free_slot);
 }
 
 void remove_tree(const char* path) noexcept {

@@ -180,7 +180,7 @@ BodyError body_error(const MassProperties& body, std::span<const std::int32_t> p
         auto e = std::ranges::lower_bound(errors, p, {}, &VolumeError::primitive);
         for (; e != errors.end() && e->primitive == p; ++e) {
             if (e->from >= 0 && std::ranges::binary_search(primitives, e->from)) continue;
-            const double more = e->volume_m3 * densities[static_cast<std::size_t>(p)];
+            const double more = e->volume_m3 * densities[p];
             mass += more * more;
             for (std::size_t a = 0; a < 3; ++a) {
                 const double turn = more * (e->center[a] - body.center[a]);

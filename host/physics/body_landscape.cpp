@@ -46,7 +46,7 @@ std::int32_t insert_pose(const Landscape::Pose& pose, Landscape& l) {
 void add_pose_as_scanned(bool hangs, Landscape& l) {
     constexpr double alike = 1e-6;  // of unit directions
     const bool none = l.poses.empty();
-    if (hangs || none || dot(l.poses[static_cast<std::size_t>(l.now)].up, as_scanned) < 1 - alike) {
+    if (hangs || none || dot(l.poses[l.now].up, as_scanned) < 1 - alike) {
         constexpr double nan = std::numeric_limits<double>::quiet_NaN();
         const std::int32_t now = insert_pose({as_scanned, 0, 0, -1, none ? nan : 0}, l);
         if (!none)
@@ -54,7 +54,7 @@ void add_pose_as_scanned(bool hangs, Landscape& l) {
                 {as_scanned, std::numeric_limits<double>::infinity(), {now, l.now}, {}});
         l.now = now;
     }
-    Landscape::Pose& now = l.poses[static_cast<std::size_t>(l.now)];
+    Landscape::Pose& now = l.poses[l.now];
     now.up = as_scanned;
     now.energy_J = 0;
 }
@@ -73,9 +73,7 @@ Vec3 top_of(const TippingWay& way, double height_m) {
 // The pass nearest to the way's direction that leads from the pose as scanned to one no higher than
 // the way's top; none where there is none.
 Landscape::Pass* pass_of(const TippingWay& way, double energy_J, Landscape& l) {
-    const auto no_higher = [&](std::int32_t pose) {
-        return l.poses[static_cast<std::size_t>(pose)].energy_J <= energy_J;
-    };
+    const auto no_higher = [&](std::int32_t pose) { return l.poses[pose].energy_J <= energy_J; };
     Landscape::Pass* nearest = nullptr;
     double most = 0;
     for (Landscape::Pass& pass : l.passes) {

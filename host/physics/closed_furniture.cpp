@@ -54,18 +54,17 @@ class Sight {
                 bool own = false;
                 while (!own && last > -reach) {
                     const std::int32_t p = cell(--last);
-                    own = p >= 0 && object_[static_cast<std::size_t>(p)] == object;
+                    own = p >= 0 && object_[p] == object;
                 }
                 if (!own) continue;
                 ++solid;
                 const auto behind = [&](int n) {
                     const std::int32_t p = cell(n);
-                    return p >= 0 && room_[static_cast<std::size_t>(p)];
+                    return p >= 0 && room_[p];
                 };
                 int away = 0;
                 while (away <= reach + 1 && !behind(last - away) && !behind(last + away)) ++away;
-                for (int more = -1; more <= 1; ++more)
-                    before[static_cast<std::size_t>(more + 1)] += away <= reach + more;
+                for (int more = -1; more <= 1; ++more) before[more + 1] += away <= reach + more;
             }
         }
         Backing share{};
@@ -83,7 +82,7 @@ class Sight {
                    end = cells_.k.begin() + static_cast<std::ptrdiff_t>(last);
         const auto found = std::lower_bound(begin, end, k);
         if (found == end || *found != k) return -1;
-        return cells_.primitive[static_cast<std::size_t>(found - cells_.k.begin())];
+        return cells_.primitive[found - cells_.k.begin()];
     }
 
     const SolidCells& cells_;
@@ -99,9 +98,8 @@ std::vector<FootOutline> foot_outlines(const SolidCells& cells,
     const double h = cells.voxel_m;
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
-        if (p < 0 || room[static_cast<std::size_t>(p)]) continue;
-        FootOutline& f =
-            out[static_cast<std::size_t>(object_of_primitive[static_cast<std::size_t>(p)])];
+        if (p < 0 || room[p]) continue;
+        FootOutline& f = out[object_of_primitive[p]];
         f.lowest = std::min(f.lowest, cells.k[n]);
         f.highest = std::max(f.highest, cells.k[n]);
         const Point low{cells.i[n] * h, cells.j[n] * h};

@@ -66,8 +66,7 @@ MergeTree without_shallow(MergeTree tree, double plateau_tolerance) {
     std::vector<MergeTree::Basin> kept;
     for (std::size_t b = 0; b < tree.basins.size(); ++b) {
         MergeTree::Basin basin = tree.basins[b];
-        const std::int32_t parent =
-            basin.parent < 0 ? -1 : kept_as[static_cast<std::size_t>(basin.parent)];
+        const std::int32_t parent = basin.parent < 0 ? -1 : kept_as[basin.parent];
         if (parent >= 0 && basin.pass - basin.energy <= plateau_tolerance) {
             kept_as[b] = parent;
             continue;
@@ -77,7 +76,7 @@ MergeTree without_shallow(MergeTree tree, double plateau_tolerance) {
         kept.push_back(basin);
     }
     tree.basins = std::move(kept);
-    for (std::int32_t& basin : tree.basin_of) basin = kept_as[static_cast<std::size_t>(basin)];
+    for (std::int32_t& basin : tree.basin_of) basin = kept_as[basin];
     return tree;
 }
 
@@ -110,12 +109,12 @@ MergeTree disconnectivity_graph(std::span<const double> energy,
 
 std::int32_t MergeTree::last_join(std::uint32_t a, std::uint32_t b) const {
     std::int32_t p = basin_of[a], q = basin_of[b], last = -1;
-    const auto pass = [&](std::int32_t n) { return basins[static_cast<std::size_t>(n)].pass; };
+    const auto pass = [&](std::int32_t n) { return basins[n].pass; };
     // The later basin is never an ancestor of the earlier: climb from it.
     while (p != q) {
         std::int32_t& later = p > q ? p : q;
         if (last < 0 || pass(later) > pass(last)) last = later;
-        later = basins[static_cast<std::size_t>(later)].parent;
+        later = basins[later].parent;
     }
     return last;
 }
@@ -123,7 +122,7 @@ std::int32_t MergeTree::last_join(std::uint32_t a, std::uint32_t b) const {
 double MergeTree::minimax(std::span<const float> energy, std::uint32_t a, std::uint32_t b) const {
     const double level = std::max(energy[a], energy[b]);
     const std::int32_t last = last_join(a, b);
-    return last < 0 ? level : std::max(level, basins[static_cast<std::size_t>(last)].pass);
+    return last < 0 ? level : std::max(level, basins[last].pass);
 }
 
 }  // namespace topple::physics

@@ -26,7 +26,7 @@ std::optional<std::int32_t> other_at(const SolidCells& cells, const CellColumns&
                to = begin + static_cast<std::ptrdiff_t>(last);
     const auto found = std::lower_bound(from, to, index(at[2]));
     if (found == to || *found != index(at[2])) return std::nullopt;
-    const std::int32_t primitive = cells.primitive[static_cast<std::size_t>(found - begin)];
+    const std::int32_t primitive = cells.primitive[found - begin];
     if (std::ranges::binary_search(body.primitives, primitive) ||
         std::ranges::binary_search(along, primitive))
         return std::nullopt;
@@ -64,8 +64,7 @@ Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const
             const Vec3 at = turned(angle, 0, above);
             if (at[2] < support_m + 2 * voxel) continue;
             auto by = other_at(cells, columns, body, along, at);
-            const bool gives_way =
-                by && !stops.empty() && (*by < 0 || !stops[static_cast<std::size_t>(*by)]);
+            const bool gives_way = by && !stops.empty() && (*by < 0 || !stops[*by]);
             if (!by || gives_way) by = walls.between(c, at);
             if (by && ++met == enough) return {turned(angle, -beside, height), true, *by};
         }

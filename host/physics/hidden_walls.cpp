@@ -18,7 +18,7 @@ bool stands_between(const HiddenWall& wall, const Vec3& from, const Vec3& to) {
     const double at = dot2(wall.along, from) * (1 - share) + dot2(wall.along, to) * share;
     const double column = std::floor((at - wall.from_m) / wall.column_m);
     if (!(column >= 0 && column < static_cast<double>(wall.top_m.size()))) return false;
-    return to[2] <= double{wall.top_m[static_cast<std::size_t>(column)]};
+    return to[2] <= double{wall.top_m[column]};
 }
 
 }  // namespace

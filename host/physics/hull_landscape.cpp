@@ -52,12 +52,11 @@ std::vector<HullPose> make_poses(const HullPolytope& hull, const MergeTree& tree
     for (HullPose& pose : poses) pose.barrier_m = pose.joins_at_m - pose.height_m;
     for (const HullPose& pose : poses) {
         if (pose.joins < 0) continue;
-        HullPose& deeper = poses[static_cast<std::size_t>(pose.joins)];
+        HullPose& deeper = poses[pose.joins];
         deeper.barrier_m = std::min(deeper.barrier_m, pose.joins_at_m - deeper.height_m);
     }
     for (std::size_t f = 0; f < angle.size(); ++f) {
-        poses[static_cast<std::size_t>(tree.basin_of[f])].probability +=
-            angle[f] / (4 * std::numbers::pi);
+        poses[tree.basin_of[f]].probability += angle[f] / (4 * std::numbers::pi);
     }
     return poses;
 }

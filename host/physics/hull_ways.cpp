@@ -41,7 +41,7 @@ std::vector<PosePass> HullWays::passes(double noise_m) const {
         MinimumBehind minimum{start_height_m_, hull_.face[f].height * hull_.radius, start_,
                               opposite(hull_.face[f].normal)};
         if (last >= 0) {
-            const MergeTree::Basin& basin = tree_.basins[static_cast<std::size_t>(last)];
+            const MergeTree::Basin& basin = tree_.basins[last];
             if (basin.pass * hull_.radius > start_height_m_) {
                 minimum.level_m = basin.pass * hull_.radius;
                 minimum.pass = direction(basin.saddle);
@@ -64,7 +64,7 @@ double HullWays::level(const Vec3& up) const {
     double level = std::max(start_height_m_, height(up));
     const std::int32_t last = tree_.last_join(rest_, descend(hull_, opposite(up)));
     if (last >= 0) {
-        level = std::max(level, tree_.basins[static_cast<std::size_t>(last)].pass * hull_.radius);
+        level = std::max(level, tree_.basins[last].pass * hull_.radius);
     }
     return level;
 }

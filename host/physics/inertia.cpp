@@ -25,8 +25,7 @@ std::vector<Symmetric> second_moments(const SolidCells& cells, std::int32_t coun
                                       const BoundaryCells& boundary) {
     std::vector<Symmetric> out(static_cast<std::size_t>(count), Symmetric{});
     each_solid_piece(cells, boundary, [&](const SolidPiece& piece) {
-        add(piece.centre, piece.share, cells.voxel_m,
-            out[static_cast<std::size_t>(piece.primitive)]);
+        add(piece.centre, piece.share, cells.voxel_m, out[piece.primitive]);
     });
     return out;
 }
@@ -42,7 +41,7 @@ std::vector<Symmetric> inertia_of_objects(std::span<const Symmetric> moments,
     };
     std::vector<Sum> sums(density_kg_m3.size());
     for (std::size_t p = 0; p < bodies.size(); ++p) {
-        Sum& sum = sums[static_cast<std::size_t>(object_of_primitive[p])];
+        Sum& sum = sums[object_of_primitive[p]];
         sum.volume += bodies[p].volume_m3;
         for (std::size_t a = 0; a < 3; ++a)
             sum.first[a] += bodies[p].volume_m3 * bodies[p].center[a];

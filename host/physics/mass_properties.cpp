@@ -39,7 +39,7 @@ SolidCells whole_cells(const SolidCells& cells, const BoundaryCells& boundary,
             cells.primitive[n] != boundary.primitive[b])
             continue;
         out.primitive[n] = -1;
-        ++moments[static_cast<std::size_t>(cells.primitive[n])].parts;
+        ++moments[cells.primitive[n]].parts;
     }
     return out;
 }
@@ -49,7 +49,7 @@ void add_shares(const BoundaryCells& boundary, const std::array<std::int32_t, 3>
     constexpr std::int64_t steps = 4;  // of an edge
     const std::vector<std::int32_t>* axes[3] = {&boundary.i, &boundary.j, &boundary.k};
     for (std::size_t b = 0; b < boundary.size(); ++b) {
-        Moments& m = moments[static_cast<std::size_t>(boundary.primitive[b])];
+        Moments& m = moments[boundary.primitive[b]];
         m.shares += boundary.share[b];
         for (std::size_t a = 0; a < 3; ++a) {
             const std::int64_t middle =
@@ -99,8 +99,7 @@ void add_slab(device::Device& device, const SolidCells& cells, std::size_t begin
               const std::array<std::int32_t, 3>& origin, std::vector<Moments>& moments) {
     // Counting sort by label; what belongs to none comes first and is left out.
     std::vector<std::uint32_t> at(moments.size() + 2, 0);
-    for (std::size_t n = begin; n < end; ++n)
-        ++at[static_cast<std::size_t>(cells.primitive[n] + 2)];
+    for (std::size_t n = begin; n < end; ++n) ++at[cells.primitive[n] + 2];
     for (std::size_t l = 1; l < at.size(); ++l) at[l] += at[l - 1];
     std::vector<std::uint32_t> first, segment_label, starts(at.begin(), at.end() - 1);
     for (std::size_t label = 0; label < moments.size(); ++label) {
@@ -113,8 +112,7 @@ void add_slab(device::Device& device, const SolidCells& cells, std::size_t begin
     first.push_back(static_cast<std::uint32_t>(end - begin));
     std::vector<std::uint32_t> order(end - begin);
     for (std::size_t n = begin; n < end; ++n) {
-        order[starts[static_cast<std::size_t>(cells.primitive[n] + 1)]++] =
-            static_cast<std::uint32_t>(n - begin);
+        order[starts[cells.primitive[n] + 1]++] = static_cast<std::uint32_t>(n - begin);
     }
     const auto part = [&](const std::vector<std::int32_t>& axis) {
         return std::span<const std::int32_t>(axis).subspan(begin, end - begin);

@@ -69,7 +69,7 @@ double error_among_alike_kg(std::span<const double> mass_kg, std::span<const std
     if (alike.empty() || !(mass_kg[object] > 0)) return 0;
     double squares = 0;
     for (const std::int32_t other : alike) {
-        const double mass = mass_kg[static_cast<std::size_t>(other)];
+        const double mass = mass_kg[other];
         const double off = mass > 0 ? std::log(mass / mass_kg[object]) : 0;
         squares += off * off;
     }

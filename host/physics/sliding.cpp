@@ -24,7 +24,7 @@ std::vector<Footprint> footprints(const SolidCells& cells, std::span<const std::
     std::vector<Footprint> feet(count);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         if (object[n] < 0) continue;
-        Footprint& foot = feet[static_cast<std::size_t>(object[n])];
+        Footprint& foot = feet[object[n]];
         foot.top = foot.columns.empty() ? cells.k[n] : std::max(foot.top, cells.k[n]);
         if (foot.columns.empty() || foot.columns.back().i != cells.i[n] ||
             foot.columns.back().j != cells.j[n])
@@ -330,7 +330,7 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
                       const Footprint& foot, const MassProperties& body, double friction,
                       const SlideOptions& options) {
     SlideMap map(cells, columns, object, self, foot, body.center, longest_slide_m, options.unseen);
-    if (!options.stances.empty()) map.stand(options.stances[static_cast<std::size_t>(self)]);
+    if (!options.stances.empty()) map.stand(options.stances[self]);
     const double x = body.center[0] / cells.voxel_m, y = body.center[1] / cells.voxel_m;
     const Search::Way way = Search(map, x, y).run();
     SlideResult result;
@@ -370,12 +370,11 @@ std::vector<std::int32_t> object_of_cells(const SolidCells& cells,
         const std::int32_t p = cells.primitive[n];
         if (p < 0) continue;
         if (static_cast<std::size_t>(p) >= object_of_primitive.size() ||
-            object_of_primitive[static_cast<std::size_t>(p)] >=
-                static_cast<std::int64_t>(objects)) {
+            object_of_primitive[p] >= static_cast<std::int64_t>(objects)) {
             throw Error(ErrorKind::usage, "slide_all: primitive " + std::to_string(p) +
                                               " has no object among " + std::to_string(objects));
         }
-        object[n] = object_of_primitive[static_cast<std::size_t>(p)];
+        object[n] = object_of_primitive[p];
     }
     return object;
 }

@@ -26,7 +26,7 @@ std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const Bounda
             whole.primitive[n] = -1;
     }
     for (std::int32_t& p : whole.primitive)
-        if (p >= 0 && !wanted[static_cast<std::size_t>(p)]) p = -1;
+        if (p >= 0 && !wanted[p]) p = -1;
     const auto coarse = voxel_hulls(whole, static_cast<std::int32_t>(wanted.size()));
     std::vector<std::vector<Vec3>> out(wanted.size());
     threads.each(wanted.size(), 1, [&](std::size_t p) {

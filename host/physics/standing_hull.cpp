@@ -41,8 +41,7 @@ std::shared_ptr<HullWays> ways_of(std::span<const Vec3> vertices) {
 std::vector<Vec3> vertices_of(const SupportTable::Rows& rows, const Candidate& candidate) {
     std::vector<Vec3> all;
     std::size_t count = 0;
-    for (const std::int32_t p : candidate.primitives)
-        count += rows.vertices[static_cast<std::size_t>(p)].size();
+    for (const std::int32_t p : candidate.primitives) count += rows.vertices[p].size();
     all.reserve(count);
     for (const std::int32_t p : candidate.primitives) {
         const auto at = static_cast<std::size_t>(p);

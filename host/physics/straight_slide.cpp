@@ -45,7 +45,7 @@ StraightSlide straight_from(const Landscape::Places& places, std::int32_t a, std
         const auto x = static_cast<std::int32_t>(std::lround(a + at * way[0]));
         const auto y = static_cast<std::int32_t>(std::lround(b + at * way[1]));
         if (x < 0 || y < 0 || x >= places.side || y >= places.side) return {};
-        const float energy = places.energy_J[static_cast<std::size_t>(y * places.side + x)];
+        const float energy = places.energy_J[y * places.side + x];
         if (!std::isfinite(energy)) return {};
         if (energy < 0)
             return {std::max(0.0, at - 1) * places.step_m, weight_N > 0 ? -energy / weight_N : 0};
@@ -65,7 +65,7 @@ SlideElsewhere slide_elsewhere(const Landscape::Places& places, std::int32_t a, 
                                double mass_kg, double friction,
                                std::span<const std::array<double, 2>> ways) {
     const auto energy = [&](std::int32_t x, std::int32_t y) {
-        return places.energy_J[static_cast<std::size_t>(y * places.side + x)];
+        return places.energy_J[y * places.side + x];
     };
     SlideElsewhere out;
     const float here = energy(a, b);

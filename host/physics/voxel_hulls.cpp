@@ -71,7 +71,7 @@ std::vector<std::vector<Corner>> voxel_hulls(const SolidCells& cells, std::int32
             throw Error(ErrorKind::input, "solid cells: primitive " + std::to_string(label) +
                                               " is not below " + std::to_string(primitives));
         }
-        auto& list = columns[static_cast<std::size_t>(label)];
+        auto& list = columns[label];
         if (list.empty() || list.back().i != cells.i[n] || list.back().j != cells.j[n]) {
             list.push_back({cells.i[n], cells.j[n], cells.k[n], cells.k[n]});
         } else {

@@ -44,8 +44,7 @@ Drawing draw_places(const Landscape::Places& places) {
     Drawing::Raster raster{{left, top}, size, places.side, {}, palette()};
     for (std::int32_t row = places.side - 1; row >= 0; --row) {
         for (std::int32_t column = 0; column < places.side; ++column) {
-            const double value =
-                places.energy_J[static_cast<std::size_t>(row * places.side + column)];
+            const double value = places.energy_J[row * places.side + column];
             std::uint8_t code = unknown;
             if (std::isinf(value)) code = blocked;
             if (value < 0) code = static_cast<std::uint8_t>(falls + step(-value / deepest));

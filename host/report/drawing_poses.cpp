@@ -116,8 +116,7 @@ class SphereMap {
         std::vector<std::array<std::int32_t, 2>> seen;
         for (const Landscape::Pass& pass : l_.passes) {
             const auto pair = std::minmax(pass.poses[0], pass.poses[1]);
-            if (!number[static_cast<std::size_t>(pair.first)] ||
-                !number[static_cast<std::size_t>(pair.second)] ||
+            if (!number[pair.first] || !number[pair.second] ||
                 std::ranges::find(seen, std::array{pair.first, pair.second}) != seen.end())
                 continue;
             seen.push_back({pair.first, pair.second});

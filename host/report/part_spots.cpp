@@ -102,12 +102,12 @@ std::vector<std::optional<Vec3>> nearest_points(
                                       groups.size());
     for (std::size_t g = groups.size(); g-- > 0;)
         if (groups[g].first >= 0 && groups[g].first <= most && places[g])
-            group_of[static_cast<std::size_t>(groups[g].first)] = g;
+            group_of[groups[g].first] = g;
     std::vector<double> least(groups.size(), std::numeric_limits<double>::infinity());
     const std::vector<std::optional<Vec3>> wanted = places;
     for (std::size_t i = 0; i < points.x.size(); ++i) {
         if (points.primitive[i] < 0 || points.primitive[i] > most) continue;
-        const std::size_t g = group_of[static_cast<std::size_t>(points.primitive[i])];
+        const std::size_t g = group_of[points.primitive[i]];
         if (g == groups.size()) continue;
         const Vec3 p{points.x[i], points.y[i], points.z[i]};
         double square = 0;

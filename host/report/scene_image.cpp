@@ -27,7 +27,7 @@ Box box_of(const PackedView& view) {
         const auto at = [&](std::size_t hundredths) {
             const auto n = static_cast<std::ptrdiff_t>((steps.size() - 1) * hundredths / 100);
             std::nth_element(steps.begin(), steps.begin() + n, steps.end());
-            return view.origin_m[axis] + view.step_m[axis] * steps[static_cast<std::size_t>(n)];
+            return view.origin_m[axis] + view.step_m[axis] * steps[n];
         };
         box.low[axis] = at(2);
         box.high[axis] = at(98);
@@ -44,9 +44,9 @@ std::vector<float> blurred(const std::vector<float>& from, int width, int height
             for (int n = 0; n < 9; ++n) {
                 const int px = std::clamp(x + n % 3 - 1, 0, width - 1);
                 const int py = std::clamp(y + n / 3 - 1, 0, height - 1);
-                sum += double{from[static_cast<std::size_t>(py * width + px)]};
+                sum += double{from[py * width + px]};
             }
-            to[static_cast<std::size_t>(y * width + x)] = static_cast<float>(sum / 9);
+            to[y * width + x] = static_cast<float>(sum / 9);
         }
     }
     return to;
@@ -161,8 +161,7 @@ void SceneImage::find_crevices() {
                 const double step = before - std::clamp(behind, -radius_m, radius_m);
                 if (before < 1.2 * radius_m) nearer += std::clamp(step / radius_m, 0.0, 1.0);
             }
-            open_[static_cast<std::size_t>(y * width_ + x)] =
-                static_cast<float>(1 - nearer / double(around.size()));
+            open_[y * width_ + x] = static_cast<float>(1 - nearer / double(around.size()));
         }
     }
 }
@@ -207,7 +206,7 @@ Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group, const Over
                             top.green + (bottom.green - top.green) * down,
                             top.blue + (bottom.blue - top.blue) * down};
         for (int x = 0; x < width_; ++x) {
-            const double open{open_[static_cast<std::size_t>(y * width_ + x)]};
+            const double open{open_[y * width_ + x]};
             Colour sum;
             for (int part = 0; part < fine * fine; ++part) {
                 const std::size_t at = front.index(fine * x + part % fine, fine * y + part / fine);

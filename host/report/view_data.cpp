@@ -293,8 +293,7 @@ class ViewPacker::Work {
             if (cell.exposed == 0 || out.cell.size() == limits_.voxels) continue;
             Record record{quantised(centre_of(cell, edge), cell.group),
                           aux(as_vec3(cell.normal), cell.exposed | (cell.completed ? 64 : 0))};
-            if (view_.coloured)
-                record.photo = photo(colours_[static_cast<std::size_t>(&cell - cells.data())]);
+            if (view_.coloured) record.photo = photo(colours_[&cell - cells.data()]);
             out.add(record, view_.coloured);
         }
     }

@@ -97,8 +97,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.box_middle_m = to_input(from.box.middle_m);
         to.piece_probability = from.piece.probability;
         if (from.piece.probability > 0.5)
-            to.piece_of =
-                objects.object_of_primitive[static_cast<std::size_t>(from.piece.primitive)];
+            to.piece_of = objects.object_of_primitive[from.piece.primitive];
         to.joint_probability = from.weakest.probability;
         to.weakest_joint = {from.weakest.a, from.weakest.b};
         to.mass_model = to_string(from.mass_model);
@@ -163,9 +162,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
 }
 
 void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& scene) {
-    const auto object = [&](std::int32_t p) {
-        return objects.object_of_primitive[static_cast<std::size_t>(p)];
-    };
+    const auto object = [&](std::int32_t p) { return objects.object_of_primitive[p]; };
     std::set<std::pair<std::int32_t, std::int32_t>> carries;  // primitives, a < b
     for (const graph::Carrying& c : objects.contacts.carryings) {
         if (c.supporter >= 0) carries.insert(std::minmax(c.supporter, c.supported));
@@ -173,7 +170,7 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
     scene.supports = objects.supports;
     // Their order makes the carriers of each ascend.
     for (const Support& s : scene.supports)
-        scene.objects[static_cast<std::size_t>(s.supported)].why.stands_on.push_back(s.supporter);
+        scene.objects[s.supported].why.stands_on.push_back(s.supporter);
     for (std::size_t i = 0; i < objects.contacts.pairs.size(); ++i) {
         const physics::TouchingPair& pair = objects.contacts.pairs[i];
         Contact c;
@@ -383,12 +380,11 @@ void assemble_points(FoundParts found, const ObjectStage& objects, const SafetyS
     ScenePoints& points = scene.points = std::move(found.points);
     if (objects.taken) {
         for (std::int32_t& p : points.primitive)
-            if (p >= 0) p = objects.taken->number[static_cast<std::size_t>(p)];
+            if (p >= 0) p = objects.taken->number[p];
     }
     points.object.reserve(points.primitive.size());
     for (const std::int32_t p : points.primitive)
-        points.object.push_back(p < 0 ? -1
-                                      : objects.object_of_primitive[static_cast<std::size_t>(p)]);
+        points.object.push_back(p < 0 ? -1 : objects.object_of_primitive[p]);
     const SolidScene& solids = *found.parts.solids;
     found.voxels->set_objects(objects.object_of_primitive);
     scene.solid =

@@ -110,7 +110,7 @@ std::int32_t pose_of(const Json& json, std::size_t poses, const std::filesystem:
 void check_joins(const Landscape& l, const std::filesystem::path& file) {
     for (const Landscape::Pose& pose : l.poses) {
         std::size_t steps = 0;
-        for (std::int32_t n = pose.joins; n >= 0; n = l.poses[static_cast<std::size_t>(n)].joins) {
+        for (std::int32_t n = pose.joins; n >= 0; n = l.poses[n].joins) {
             if (++steps > l.poses.size()) fail(file, "has poses that join one another in a circle");
         }
     }
@@ -184,7 +184,7 @@ void read_landscapes_json(const FileName& name, Scene& scene) {
             const auto id = object.at("id").get<std::int64_t>();
             if (id < 0 || id >= static_cast<std::int64_t>(scene.objects.size()))
                 fail(file, "is of another scene: it has an object " + std::to_string(id));
-            scene.objects[static_cast<std::size_t>(id)].landscape = landscape_of(object, file);
+            scene.objects[id].landscape = landscape_of(object, file);
         }
     } catch (const Json::exception& error) {
         fail(file, "is no landscapes.json: " + json_problem(error));

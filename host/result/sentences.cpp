@@ -44,7 +44,7 @@ constexpr double step_m = 0.05;  // a floor that is lower by less is the same on
 std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
     if (primitive < 0) return "what is there";
     const auto at = static_cast<std::size_t>(primitive);
-    const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
+    const Object& object = scene.objects[scene.primitives[at].object];
     if (!object.grounded) return numbered_object(object);
     switch (parts.solids->role(primitive)) {
         case Role::floor:
@@ -92,7 +92,7 @@ class Sentence {
     // Whose figures are those of a piece.
     std::string piece() const {
         if (object_.piece_of < 0) return "";
-        const Object& whole = scene_.objects[static_cast<std::size_t>(object_.piece_of)];
+        const Object& whole = scene_.objects[object_.piece_of];
         return " It may be a piece of " + numbered_object(whole) + " (" +
                io::two_digits(100 * object_.piece_probability) + " % likely).";
     }
@@ -159,8 +159,8 @@ class Sentence {
     // By the building, which does not give way.
     bool stopped_for_good() const {
         if (!swept_.stopped || swept_.by < 0) return false;
-        const std::int32_t by = scene_.primitives[static_cast<std::size_t>(swept_.by)].object;
-        return scene_.objects[static_cast<std::size_t>(by)].grounded;
+        const std::int32_t by = scene_.primitives[swept_.by].object;
+        return scene_.objects[by].grounded;
     }
     std::string stop() const { return what(scene_, parts_, swept_.by); }
     // Against anything else its release and risk are those of a fall with room.
@@ -175,10 +175,10 @@ class Sentence {
     // What it slides off. Of the building the part that carries most of it.
     std::string carrier() const {
         if (why_.stands_on.size() != 1) return "what carries it";
-        const Object& on = scene_.objects[static_cast<std::size_t>(why_.stands_on[0])];
+        const Object& on = scene_.objects[why_.stands_on[0]];
         if (!on.grounded) return numbered_object(on);
         const auto object_of = [&](std::int32_t p) {
-            return p < 0 ? -1 : objects_.object_of_primitive[static_cast<std::size_t>(p)];
+            return p < 0 ? -1 : objects_.object_of_primitive[p];
         };
         const graph::Carrying* most = nullptr;
         for (const graph::Carrying& c : objects_.contacts.carryings) {
@@ -297,7 +297,7 @@ std::string plain_advice(const Object& object, const Suggestion& what) {
 std::string advice_sentence(const Scene& scene, const Object& object, const Suggestion& what) {
     std::string text = plain_advice(object, what);
     if (what.leg_of < 0 || text.empty()) return text;
-    const Object& top = scene.objects[static_cast<std::size_t>(what.leg_of)];
+    const Object& top = scene.objects[what.leg_of];
     return "Look first: this may be a leg of " + numbered_object(top) +
            ". If it is none: " + io::lower_case(text.substr(0, 1)) + text.substr(1);
 }

@@ -40,8 +40,8 @@ bool lies_within(const ObjectBox& a, const ObjectBox& b, double slack_m) {
 std::vector<bool> on_floor(const SolidParts& parts, const ObjectStage& objects) {
     std::vector<bool> out(objects.object_of_primitive.size(), false);
     for (const physics::TouchingPair& pair : objects.contacts.pairs) {
-        if (parts.solids->role(pair.a) == Role::floor) out[static_cast<std::size_t>(pair.b)] = true;
-        if (parts.solids->role(pair.b) == Role::floor) out[static_cast<std::size_t>(pair.a)] = true;
+        if (parts.solids->role(pair.a) == Role::floor) out[pair.b] = true;
+        if (parts.solids->role(pair.b) == Role::floor) out[pair.a] = true;
     }
     return out;
 }

@@ -45,7 +45,7 @@ Columns::Columns(const SolidCells& cells) : cells_(cells) {
     for (std::size_t c = 0; c < n; ++c) {
         const std::int64_t column = (cells.i[c] - i0) * nj + (cells.j[c] - j0),
                            k = std::int64_t{cells.k[c]} - k0_;
-        bits_[static_cast<std::size_t>(column * words_ + k / 64)] |= std::uint64_t{1} << (k % 64);
+        bits_[column * words_ + k / 64] |= std::uint64_t{1} << (k % 64);
     }
 }
 

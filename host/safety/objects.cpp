@@ -38,7 +38,7 @@ bool is_floor_cell(const Surroundings& surroundings, std::size_t cell) {
     const std::int32_t primitive = surroundings.cells->primitive[cell];
     return primitive >= 0 &&
            static_cast<std::size_t>(primitive) < surroundings.is_floor_primitive.size() &&
-           surroundings.is_floor_primitive[static_cast<std::size_t>(primitive)];
+           surroundings.is_floor_primitive[primitive];
 }
 
 std::vector<std::vector<std::uint32_t>> cells_of_objects(
@@ -46,8 +46,7 @@ std::vector<std::vector<std::uint32_t>> cells_of_objects(
     std::vector<std::vector<std::uint32_t>> out(objects);
     for (std::size_t c = 0; c < object_of_cell.size(); ++c) {
         if (object_of_cell[c] >= 0) {
-            out[static_cast<std::size_t>(object_of_cell[c])].push_back(
-                static_cast<std::uint32_t>(c));
+            out[object_of_cell[c]].push_back(static_cast<std::uint32_t>(c));
         }
     }
     return out;

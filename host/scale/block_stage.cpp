@@ -188,7 +188,7 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     for (const SeamRecord& s : seams) {
         const geometry::Seam seam{s.variation, s.pairs, s.flush, s.ledge};
         if (s.a == s.b) {
-            out.seams.inside[static_cast<std::size_t>(s.a)] = seam;
+            out.seams.inside[s.a] = seam;
         } else {
             out.seams.between[{s.a, s.b}] = seam;
         }

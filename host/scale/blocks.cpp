@@ -42,9 +42,7 @@ std::vector<geometry::Storey> storeys_of(const fs::path& folder, std::span<const
         std::min<std::int64_t>(last - first + 1, static_cast<std::int64_t>(1000 / step_m));
     std::vector<double> area(static_cast<std::size_t>(steps), 0.0);
     for (const auto& [step, count] : cells) {
-        if (step - first < steps)
-            area[static_cast<std::size_t>(step - first)] =
-                static_cast<double>(count) * cell_m * cell_m;
+        if (step - first < steps) area[step - first] = static_cast<double>(count) * cell_m * cell_m;
     }
     return geometry::find_storeys(area, static_cast<double>(first) * step_m, step_m);
 }

@@ -165,7 +165,7 @@ class Joiner {
                 const SolidCells& c = parts.cells;
                 if (!core.holds(c.i[n], c.j[n], c.k[n])) continue;
                 ++cells_;
-                if (c.primitive[n] >= 0) ++in_core[b][static_cast<std::size_t>(c.primitive[n])];
+                if (c.primitive[n] >= 0) ++in_core[b][c.primitive[n]];
             }
             samples_ += parts.samples.size();
             for (std::size_t p = 0; p < parts.primitives.size(); ++p) {
@@ -236,8 +236,7 @@ class Joiner {
             const BlockParts block = read_block(folder_, b);
             std::vector<std::int32_t> numbers;
             for (std::size_t p = 0; p < block.primitives.size(); ++p)
-                numbers.push_back(
-                    number_[static_cast<std::size_t>(id(b, static_cast<std::int32_t>(p)))]);
+                numbers.push_back(number_[id(b, static_cast<std::int32_t>(p))]);
             add_cells(block, layout_.blocks[b].core, numbers, cells);
             add_seams(block.seams, numbers, parts.seams);
             add_samples(block.samples, numbers, samples_, parts.samples);
@@ -286,7 +285,7 @@ class Joiner {
             to.i.push_back(c.i[n]);
             to.j.push_back(c.j[n]);
             to.k.push_back(c.k[n]);
-            to.primitive.push_back(p < 0 ? -1 : numbers[static_cast<std::size_t>(p)]);
+            to.primitive.push_back(p < 0 ? -1 : numbers[p]);
             to.basis.push_back(c.basis[n]);
             to.unseen_below.push_back(c.unseen_below[n]);
         }
@@ -300,16 +299,15 @@ class Joiner {
             seam.flush += more.flush;
             seam.ledge += more.ledge;
         };
-        const auto number = [&](std::int32_t p) { return numbers[static_cast<std::size_t>(p)]; };
+        const auto number = [&](std::int32_t p) { return numbers[p]; };
         for (std::size_t p = 0; p < from.inside.size(); ++p) {
-            if (numbers[p] >= 0)
-                add(to.inside[static_cast<std::size_t>(numbers[p])], from.inside[p]);
+            if (numbers[p] >= 0) add(to.inside[numbers[p]], from.inside[p]);
         }
         for (const auto& [pair, seam] : from.between) {
             const std::int32_t a = number(pair.first), b = number(pair.second);
             if (a < 0 || b < 0) continue;
             if (a == b) {
-                add(to.inside[static_cast<std::size_t>(a)], seam);
+                add(to.inside[a], seam);
             } else {
                 add(to.between[std::minmax(a, b)], seam);
             }
@@ -330,7 +328,7 @@ class Joiner {
             if (!sources[c]->empty()) columns[c]->reserve(all);
         to.primitive.reserve(all);
         for (std::size_t n = 0; n < from.size(); ++n) {
-            const std::int32_t p = numbers[static_cast<std::size_t>(from.primitive[n])];
+            const std::int32_t p = numbers[from.primitive[n]];
             if (p < 0) continue;
             for (std::size_t c = 0; c < columns.size(); ++c)
                 if (!sources[c]->empty()) columns[c]->push_back((*sources[c])[n]);

@@ -33,7 +33,7 @@ TiledResult::TiledResult(std::unique_ptr<tiles::WorkFolder> work, std::filesyste
                 tiles::damaged_file(block_file(work_->path(), b));
             for (std::size_t n = 0; n < labels.cells.size(); ++n) {
                 const std::int32_t p = labels.primitive[n];
-                of_bin[labels.cells[n]] = p < 0 ? -1 : number_[b][static_cast<std::size_t>(p)];
+                of_bin[labels.cells[n]] = p < 0 ? -1 : number_[b][p];
             }
         }
     }
@@ -42,7 +42,7 @@ TiledResult::TiledResult(std::unique_ptr<tiles::WorkFolder> work, std::filesyste
 void TiledResult::take_away(const TakenAway& taken) {
     for (auto& of_bin : label_)
         for (std::int32_t& p : of_bin)
-            if (p >= 0) p = taken.number[static_cast<std::size_t>(p)];
+            if (p >= 0) p = taken.number[p];
     for (const TakenAway::Voxel& v : taken.changed)
         if (v.primitive < 0) empty_.push_back(v.at);
 }
@@ -52,7 +52,7 @@ std::vector<std::uint64_t> TiledResult::count_points(std::size_t primitives) con
     for (std::size_t b = 0; b < bins_.size(); ++b) {
         const tiles::ThinnedBin bin = tiles::read_thinned(work_->path(), bins_[b]);
         for (std::size_t n = 0; n < bin.size(); ++n) {
-            if (label_[b][n] >= 0) out[static_cast<std::size_t>(label_[b][n])] += bin.points[n];
+            if (label_[b][n] >= 0) out[label_[b][n]] += bin.points[n];
         }
     }
     return out;
@@ -99,8 +99,8 @@ void TiledResult::write_points(const std::filesystem::path& file,
         const auto place = std::ranges::lower_bound(bins_, bin);
         if (place == bins_.end() || *place != bin) io::fail(input_, "changed while it was parsed");
         return open
-            .emplace(bin, Open{tiles::CellsOfPoints(work_->path(), bin),
-                               label_[static_cast<std::size_t>(place - bins_.begin())]})
+            .emplace(bin,
+                     Open{tiles::CellsOfPoints(work_->path(), bin), label_[place - bins_.begin()]})
             .first;
     };
     auto last = open.end();  // most points lie where the one before them does

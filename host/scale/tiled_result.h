@@ -58,7 +58,7 @@ class TiledResult {
 
   private:
     std::int32_t object_of(std::int32_t primitive) const {
-        return primitive < 0 ? -1 : object_of_primitive_[static_cast<std::size_t>(primitive)];
+        return primitive < 0 ? -1 : object_of_primitive_[primitive];
     }
 
     std::unique_ptr<tiles::WorkFolder> work_;

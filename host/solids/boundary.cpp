@@ -222,7 +222,7 @@ std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& s
             const BorderVoxel& c = candidates[n];
             while (mate != mates.end() && key_of(*mate) < c.key()) ++mate;
             const bool mates_here = mate != mates.end() && key_of(*mate) == c.key();
-            if (sheet[static_cast<std::size_t>(c.primitive)] && !mates_here) continue;
+            if (sheet[c.primitive] && !mates_here) continue;
             around.gather(c.i, c.j, c.k, c.primitive, found, others);
             const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
             Combination& sum = out[n];
@@ -323,7 +323,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
                             std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
                             std::span<const KnownRest> rests) {
     for (std::size_t n = 0; n < seen.size(); ++n)
-        patches[static_cast<std::size_t>(seen.patch[n])].primitive = seen.primitive[n];
+        patches[seen.patch[n]].primitive = seen.primitive[n];
     for (SurfacePatch& p : patches)
         p.offset_m = std::hypot(p.offset_m, patch_error * cells.voxel_m);
     std::vector<BorderVoxel> candidates;

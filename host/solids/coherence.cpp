@@ -40,14 +40,14 @@ std::vector<BorderVoxel> cut_off(const SolidCells& cells, std::vector<bool>& air
         if (p < 0 || cells.basis[k] != Basis::surface || air[k]) continue;
         seen[pieces.root(k)] = true;
         any.resize(std::max(any.size(), static_cast<std::size_t>(p) + 1), false);
-        any[static_cast<std::size_t>(p)] = true;
+        any[p] = true;
     }
     std::vector<BorderVoxel> out;
     for (std::size_t k = 0; k < cells.size(); ++k) {
         const std::int32_t p = cells.primitive[k];
         if (p < 0 || static_cast<std::size_t>(p) >= any.size() || air[k] || seen[pieces.root(k)])
             continue;
-        if (!any[static_cast<std::size_t>(p)]) continue;
+        if (!any[p]) continue;
         out.push_back({cells.i[k], cells.j[k], cells.k[k], p, true});
         air[k] = true;
     }

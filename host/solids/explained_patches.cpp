@@ -28,7 +28,7 @@ struct Explainer {
     std::int32_t operator()(const Eigen::Vector3d& p, std::int32_t own,
                             std::span<const std::int32_t> near) const {
         const auto rank = [&](std::int32_t patch) {
-            return std::pair(members[static_cast<std::size_t>(patch)].size(), patch);
+            return std::pair(members[patch].size(), patch);
         };
         const auto mine = rank(own);
         return explaining(patches, near, p, [&](std::int32_t other) { return rank(other) > mine; });
@@ -109,7 +109,7 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
             std::vector<Eigen::Vector3d> sides;
             for (const auto& [other, count] : beside) {
                 if (static_cast<double>(count) >= enough)
-                    sides.push_back(normal_of(patches[static_cast<std::size_t>(other)], middle));
+                    sides.push_back(normal_of(patches[other], middle));
             }
             if (static_cast<double>(met) < enough && !is_edge(normal_of(patches[p], middle), sides))
                 continue;
@@ -117,7 +117,7 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
                 const Eigen::Vector3d at = point(n);
                 const std::int32_t other = explain(at, own, map.around(at, room));
                 patch_of_point[n] = other;
-                if (other >= 0) primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
+                if (other >= 0) primitive_of_point[n] = primitive[other];
             }
         }
     });

@@ -23,7 +23,7 @@ std::int32_t explaining(std::span<const SurfacePatch> patches, std::span<const s
     double least = 1;
     for (const std::int32_t n : near) {
         if (!may(n)) continue;
-        const SurfacePatch& patch = patches[static_cast<std::size_t>(n)];
+        const SurfacePatch& patch = patches[n];
         const double off = std::abs(distance_to(patch, p)) / (outlier * patch.noise_m);
         if (off > least || (off == least && best >= 0 && best < n)) continue;
         least = off;

@@ -40,8 +40,7 @@ ObjectEntries::ObjectEntries(const BoundaryCells& boundary,
       seen_on_(object_of_primitive.size()) {
     for (std::uint32_t n = 0; n < boundary.patches.size(); ++n) {
         const std::int32_t p = boundary.patches[n].primitive;
-        if (p >= 0 && static_cast<std::size_t>(p) < seen_on_.size())
-            seen_on_[static_cast<std::size_t>(p)].push_back(n);
+        if (p >= 0 && static_cast<std::size_t>(p) < seen_on_.size()) seen_on_[p].push_back(n);
     }
 }
 
@@ -50,7 +49,7 @@ void ObjectEntries::each(const ObjectVoxel& voxel, Do what) const {
     for (std::size_t n = voxel.first; n < voxel.last; ++n) {
         const std::int32_t p = b_.primitive[n];
         const bool known = p >= 0 && static_cast<std::size_t>(p) < object_of_.size();
-        const std::int32_t object = known ? object_of_[static_cast<std::size_t>(p)] : -1;
+        const std::int32_t object = known ? object_of_[p] : -1;
         if (object == voxel.object) what(n);
     }
 }
@@ -99,7 +98,7 @@ std::optional<Facet> ObjectEntries::beside(std::int32_t primitive, const Vec3& a
     std::optional<Facet> out;
     if (primitive < 0 || static_cast<std::size_t>(primitive) >= seen_on_.size()) return out;
     double least = h_;
-    for (const std::uint32_t n : seen_on_[static_cast<std::size_t>(primitive)]) {
+    for (const std::uint32_t n : seen_on_[primitive]) {
         const double away = std::abs(b_.patches[n].distance(at));
         if (away >= least) continue;
         const Vec3 g = b_.patches[n].gradient(at);

@@ -18,7 +18,7 @@ namespace topple::solids {
 inline Eigen::Vector3d rotated(const std::array<Vec3, 3>& axes, double x, double y, double z) {
     Eigen::Vector3d out;
     for (int a = 0; a < 3; ++a) {
-        const Vec3& row = axes[static_cast<std::size_t>(a)];
+        const Vec3& row = axes[a];
         out[a] = row[0] * x + row[1] * y + row[2] * z;
     }
     return out;

@@ -62,7 +62,7 @@ class MateFinder {
         of_primitive_.resize(static_cast<std::size_t>(primitives_));
         for (std::size_t n = 0; n < seen.size(); ++n) {
             const auto patch = static_cast<std::uint32_t>(seen.patch[n]);
-            auto& own = of_primitive_[static_cast<std::size_t>(seen.primitive[n])];
+            auto& own = of_primitive_[seen.primitive[n]];
             if (own.empty() || own.back() != patch) own.push_back(patch);
             extent_[patch].add({seen.i[n], seen.j[n], seen.k[n]});
         }
@@ -131,14 +131,14 @@ class MateFinder {
             const std::int32_t other = m == no_cell ? -1 : cells_.primitive[m];
             // A face that was seen is where it was seen, but it may pass a voxel of another.
             if ((other == p && adjacent) || (faced && (other < 0 || other == p))) continue;
-            Side& side = sides[static_cast<std::size_t>(p)];
+            Side& side = sides[p];
             side.faces.push_back({n, other == p ? -1 : other, faced});
             if (other >= 0 && other != p && (side.others.empty() || side.others.back() != other))
                 side.others.push_back(other);
             side.box.add(place_of(cells_, n));
         }
         for (std::int32_t p = 0; p < primitives_; ++p) {
-            Side& side = sides[static_cast<std::size_t>(p)];
+            Side& side = sides[p];
             sort_unique(side.others);
             if (!side.others.empty()) add_side(p, side, axis, way, mates);
         }
@@ -153,10 +153,9 @@ class MateFinder {
     void add_side(std::int32_t p, const Side& side, std::size_t axis, int way,
                   std::vector<Mate>& mates) const {
         std::vector<Candidate> candidates;
-        for (const std::uint32_t patch : of_primitive_[static_cast<std::size_t>(p)])
-            candidates.push_back({patch, -1, false});
+        for (const std::uint32_t patch : of_primitive_[p]) candidates.push_back({patch, -1, false});
         for (const std::int32_t q : side.others) {
-            for (const std::uint32_t patch : of_primitive_[static_cast<std::size_t>(q)]) {
+            for (const std::uint32_t patch : of_primitive_[q]) {
                 if (extent_[patch].meets(side.box)) candidates.push_back({patch, q, true});
             }
             if (axis != 2) continue;

@@ -31,7 +31,7 @@ using Key = std::pair<std::int32_t, std::array<std::int32_t, 3>>;
 std::array<Key, 27> around(const Key& key) {
     std::array<Key, 27> out;
     for (std::int32_t n = 0; n < 27; ++n)
-        out[static_cast<std::size_t>(n)] = {
+        out[n] = {
             key.first,
             {key.second[0] + n / 9 - 1, key.second[1] + n / 3 % 3 - 1, key.second[2] + n % 3 - 1}};
     return out;
@@ -144,7 +144,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
     std::vector<std::int32_t> primitive(patches.size(), -1);
     for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
         if (patch_of_point[n] < 0) continue;
-        std::int32_t& of = primitive[static_cast<std::size_t>(patch_of_point[n])];
+        std::int32_t& of = primitive[patch_of_point[n]];
         of = std::max(of, primitive_of_point[n]);
     }
     std::vector<std::vector<Left>> parts(cloud.size() / point_chunk + 1);
@@ -154,14 +154,14 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
             if (primitive_of_point[n] < 0) continue;
             const Eigen::Vector3d at = point(n);
             if (patch_of_point[n] >= 0) {
-                const SurfacePatch& own = patches[static_cast<std::size_t>(patch_of_point[n])];
+                const SurfacePatch& own = patches[patch_of_point[n]];
                 if (!(std::abs(distance_to(own, at)) > outlier * own.noise_m)) continue;
             }
             const std::int32_t other =
                 explaining(patches, map.around(at, room), at, [](std::int32_t) { return true; });
             if (other >= 0) {
                 patch_of_point[n] = other;
-                primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
+                primitive_of_point[n] = primitive[other];
             } else {
                 parts[first / point_chunk].push_back(
                     {primitive_of_point[n], map.cell_of(at), at, static_cast<std::uint32_t>(n)});
@@ -191,8 +191,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         double noise = 0;  // the primitive's own here
         for (const std::size_t n : one_a_cell) {
             for (const std::int32_t p : map.around(left[n].at, room))
-                if (primitive[static_cast<std::size_t>(p)] == face.primitive)
-                    noise = std::max(noise, patches[static_cast<std::size_t>(p)].noise_m);
+                if (primitive[p] == face.primitive) noise = std::max(noise, patches[p].noise_m);
         }
         if (face.patch.noise_m > noise) continue;
         for (const std::size_t n : one_a_cell)

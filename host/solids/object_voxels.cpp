@@ -45,7 +45,7 @@ class LayersBehind {
             if (p < 0) continue;
             if (static_cast<std::size_t>(p) >= patches_of_.size())
                 patches_of_.resize(static_cast<std::size_t>(p) + 1);
-            patches_of_[static_cast<std::size_t>(p)].push_back(n);
+            patches_of_[p].push_back(n);
         }
     }
 
@@ -109,7 +109,7 @@ class LayersBehind {
         if (v.primitive < 0 || static_cast<std::size_t>(v.primitive) >= patches_of_.size())
             return out;
         double nearest = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t n : patches_of_[static_cast<std::size_t>(v.primitive)]) {
+        for (const std::uint32_t n : patches_of_[v.primitive]) {
             const std::optional<Beside> b = beside(b_.patches[n], v.at);
             if (!b || b->away >= nearest) continue;
             nearest = b->away;
@@ -191,7 +191,7 @@ std::vector<ObjectVoxel> object_voxels(const SolidCells& cells, const BoundaryCe
                                        std::span<const std::int32_t> object_of_primitive) {
     const auto object_of = [&](std::int32_t p) {
         return p >= 0 && static_cast<std::size_t>(p) < object_of_primitive.size()
-                   ? object_of_primitive[static_cast<std::size_t>(p)]
+                   ? object_of_primitive[p]
                    : std::int32_t{-1};
     };
     std::vector<ObjectVoxel> out;

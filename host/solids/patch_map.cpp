@@ -57,8 +57,7 @@ PatchMap::PatchMap(const CloudView& cloud, std::span<const std::int32_t> patch_o
 std::array<std::int32_t, 3> PatchMap::cell_of(const Eigen::Vector3d& p) const {
     std::array<std::int32_t, 3> out{};
     for (int a = 0; a < 3; ++a)
-        out[static_cast<std::size_t>(a)] =
-            static_cast<std::int32_t>(std::clamp(std::floor(p[a] / cell_m_), -2e9, 2e9));
+        out[a] = static_cast<std::int32_t>(std::clamp(std::floor(p[a] / cell_m_), -2e9, 2e9));
     return out;
 }
 

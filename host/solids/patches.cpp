@@ -26,8 +26,7 @@ geometry::AlgebraicModel rotated(const geometry::AlgebraicModel& model,
                                  const std::array<Vec3, 3>& axes) {
     Eigen::Matrix3d r, q;
     for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b)
-            r(a, b) = axes[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
+        for (int b = 0; b < 3; ++b) r(a, b) = axes[a][b];
     const auto& c = model.coefficients;
     q << c[4], c[7] / 2, c[8] / 2, c[7] / 2, c[5], c[9] / 2, c[8] / 2, c[9] / 2, c[6];
     q = (r * q * r.transpose()).eval();

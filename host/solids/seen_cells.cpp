@@ -123,8 +123,7 @@ std::vector<bool> one_sided(const SeenCells& seen, std::span<const SurfacePatch>
     std::vector<double> count(primitives, 0.0);
     for (std::size_t n = 0; n < seen.size(); ++n) {
         const auto p = static_cast<std::size_t>(seen.primitive[n]);
-        const Vec3 g = patches[static_cast<std::size_t>(seen.patch[n])].gradient(
-            {seen.x[n], seen.y[n], seen.z[n]});
+        const Vec3 g = patches[seen.patch[n]].gradient({seen.x[n], seen.y[n], seen.z[n]});
         sum[p] += seen.count[n] * Eigen::Vector3d(g[0], g[1], g[2]).normalized();
         count[p] += seen.count[n];
     }

@@ -21,7 +21,7 @@ SolidParts solid_parts(const Surfaces& geometry, const Volume& voxels) {
     out.samples = numbered(geometry.samples, voxels.number);
     out.points.resize(out.model.size());
     for (const std::int32_t p : numbered(geometry.primitive_of_point, voxels.number)) {
-        if (p >= 0) ++out.points[static_cast<std::size_t>(p)];
+        if (p >= 0) ++out.points[p];
     }
     out.seams = surface_seams(geometry, voxels.number);
     out.solids = voxels.solids;

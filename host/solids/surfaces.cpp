@@ -81,7 +81,7 @@ geometry::SurfaceSeams surface_seams(const Surfaces& g, std::span<const std::int
     const geometry::Surfels& s = g.surfels;
     const auto solid = [&](std::size_t surfel) {
         const std::int32_t p = g.primitives.label[surfel];
-        return p < 0 ? -1 : number[static_cast<std::size_t>(p)];
+        return p < 0 ? -1 : number[p];
     };
     geometry::SurfaceSeams out;
     out.inside.resize(static_cast<std::size_t>(
@@ -93,8 +93,8 @@ geometry::SurfaceSeams surface_seams(const Surfaces& g, std::span<const std::int
             const std::uint32_t m = s.neighbours[k];
             const std::int32_t b = solid(m);
             if (m <= n || b < 0) continue;
-            geometry::Seam& seam = a == b ? out.inside[static_cast<std::size_t>(a)]
-                                          : out.between[{std::min(a, b), std::max(a, b)}];
+            geometry::Seam& seam =
+                a == b ? out.inside[a] : out.between[{std::min(a, b), std::max(a, b)}];
             seam.variation += 1 - (double{s.nx[n]} * s.nx[m] + double{s.ny[n]} * s.ny[m] +
                                    double{s.nz[n]} * s.nz[m]);
             ++seam.pairs;

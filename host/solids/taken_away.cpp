@@ -18,7 +18,7 @@ std::int32_t heir_of(const BoundaryCells& boundary, const std::vector<bool>& kep
     for (std::size_t n = boundary.first_from(at[0], at[1], at[2], 0);
          n < boundary.size() && place(n) == at; ++n) {
         const std::int32_t p = boundary.primitive[n];
-        if (!kept[static_cast<std::size_t>(p)] || boundary.share[n] <= most) continue;
+        if (!kept[p] || boundary.share[n] <= most) continue;
         most = boundary.share[n];
         heir = p;
     }
@@ -34,9 +34,7 @@ TakenAway take_away(const SolidScene& solids, const std::vector<bool>& kept) {
         out.number.push_back(kept[p] ? static_cast<std::int32_t>(roles.size()) : -1);
         if (kept[p]) roles.push_back(solids.role(static_cast<std::int32_t>(p)));
     }
-    const auto number = [&](std::int32_t p) {
-        return p < 0 ? -1 : out.number[static_cast<std::size_t>(p)];
-    };
+    const auto number = [&](std::int32_t p) { return p < 0 ? -1 : out.number[p]; };
     const SolidCells& from = solids.cells();
     SolidCells cells;
     cells.voxel_m = from.voxel_m;

@@ -24,7 +24,7 @@ namespace {
 std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t primitives) {
     std::vector<std::uint64_t> voxels(primitives, 0);
     for (const std::int32_t p : cells.primitive) {
-        if (p >= 0) ++voxels[static_cast<std::size_t>(p)];
+        if (p >= 0) ++voxels[p];
     }
     std::vector<std::int32_t> number;
     std::int32_t next = 0;
@@ -76,12 +76,12 @@ solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPo
     for (const std::int32_t f : face) faces = std::max(faces, f + 1);
     std::vector<bool> left(static_cast<std::size_t>(faces), false);
     for (const std::int32_t f : face)
-        if (f >= 0) left[static_cast<std::size_t>(f)] = true;
+        if (f >= 0) left[f] = true;
     const PointCloud all = geometry::with_gaps(cloud, gaps);
     for (std::size_t n = 0; n < gaps.size(); ++n) {
         const std::int32_t f = gaps.face[n];
-        solid.push_back(number[static_cast<std::size_t>(gaps.primitive[n])]);
-        face.push_back(f >= 0 && f < faces && left[static_cast<std::size_t>(f)] ? f : -1);
+        solid.push_back(number[gaps.primitive[n]]);
+        face.push_back(f >= 0 && f < faces && left[f] ? f : -1);
     }
     return solids::seen_cells(all, solid, face, axes, voxel_m, threads);
 }
@@ -121,12 +121,11 @@ std::vector<bool> find_sheets(const Surfaces& geometry, const std::vector<std::i
     std::vector<double> count(roles.size(), 0.0);
     for (std::size_t n = 0; n < s.size(); ++n) {
         const std::int32_t face = faces.label[n], primitive = geometry.primitives.label[n];
-        const std::int32_t p = primitive < 0 ? -1 : number[static_cast<std::size_t>(primitive)];
-        if (face < 0 || p < 0 || !in_shell(roles[static_cast<std::size_t>(p)])) continue;
-        const geometry::AlgebraicModel& model = faces.regions[static_cast<std::size_t>(face)].model;
-        sum[static_cast<std::size_t>(p)] +=
-            geometry::gradient(model, geometry::position(s, n)).normalized();
-        ++count[static_cast<std::size_t>(p)];
+        const std::int32_t p = primitive < 0 ? -1 : number[primitive];
+        if (face < 0 || p < 0 || !in_shell(roles[p])) continue;
+        const geometry::AlgebraicModel& model = faces.regions[face].model;
+        sum[p] += geometry::gradient(model, geometry::position(s, n)).normalized();
+        ++count[p];
     }
     std::vector<bool> out;
     for (std::size_t p = 0; p < roles.size(); ++p)
@@ -142,7 +141,7 @@ std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view,
     std::vector<std::uint8_t> out(cells.size(), 0);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
-        if (p < 0 || sheet[static_cast<std::size_t>(p)]) continue;
+        if (p < 0 || sheet[p]) continue;
         out[n] = static_cast<std::uint8_t>(
             view.unseen_run({cells.i[n], cells.j[n], cells.k[n] - 1}, 2, -1, 255));
     }
@@ -154,8 +153,7 @@ std::vector<solids::KnownRest> known_rests(const Surfaces& geometry,
                                            const std::vector<std::int32_t>& number) {
     std::vector<solids::KnownRest> out;
     for (const vdb::StandsOn& on : ledges(geometry)) {
-        const std::int32_t above = number[static_cast<std::size_t>(on.above)],
-                           below = number[static_cast<std::size_t>(on.below)];
+        const std::int32_t above = number[on.above], below = number[on.below];
         if (above >= 0 && below >= 0) out.push_back({above, below, on.height_m});
     }
     return out;
@@ -276,8 +274,7 @@ std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
                                    std::span<const std::int32_t> number) {
     std::vector<std::int32_t> out;
     out.reserve(primitive.size());
-    for (const std::int32_t p : primitive)
-        out.push_back(p < 0 ? -1 : number[static_cast<std::size_t>(p)]);
+    for (const std::int32_t p : primitive) out.push_back(p < 0 ? -1 : number[p]);
     return out;
 }
 

@@ -42,13 +42,13 @@ struct Sheets {
         std::iota(query_cell.begin(), query_cell.end(), 0u);
         columns.resize(std::size_t{width * width} * size());
         for (int column = 0; column < side * side; ++column) {
-            for (std::uint32_t n = start[static_cast<std::size_t>(column)];
-                 n < start[static_cast<std::size_t>(column) + 1]; ++n) {
+            for (std::uint32_t n = start[column]; n < start[static_cast<std::size_t>(column) + 1];
+                 ++n) {
                 for (int c = 0; c < width * width; ++c) {
                     const int x = column / side + c / width - radius,
                               y = column % side + c % width - radius;
                     if (x < 0 || y < 0 || x >= side || y >= side) continue;
-                    std::uint32_t first = start[static_cast<std::size_t>(x * side + y)];
+                    std::uint32_t first = start[x * side + y];
                     const std::uint32_t end = start[static_cast<std::size_t>(x * side + y) + 1];
                     while (first < end && cell_z[first] < cell_z[n] - radius) ++first;
                     std::uint32_t count = 0;

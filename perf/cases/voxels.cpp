@@ -61,8 +61,7 @@ RoomLeaves room_leaves() {
             const auto index = static_cast<std::int64_t>(std::floor(at[k] / (8 * grid.voxel_m)));
             leaf[k] = std::clamp<std::int64_t>(index, 0, leaves[k] - 1);
         }
-        out.points[static_cast<std::size_t>((leaf[0] * leaves[1] + leaf[1]) * leaves[2] +
-                                            leaf[2])] = 1;
+        out.points[(leaf[0] * leaves[1] + leaf[1]) * leaves[2] + leaf[2]] = 1;
     }
     const std::uint64_t words = vdb::pyramid_words(options.intrinsics);
     out.pyramid.resize(words * sequence.frames.size());

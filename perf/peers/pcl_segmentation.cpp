@@ -68,8 +68,7 @@ std::optional<PeerSegments> pcl_region_growing(const CloudView& cloud) {
     out.segments_s = clock.lap();
     out.label.assign(cloud.size(), -1);
     for (std::size_t k = 0; k < clusters.size(); ++k) {
-        for (const int i : clusters[k].indices)
-            out.label[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(k);
+        for (const int i : clusters[k].indices) out.label[i] = static_cast<std::int32_t>(k);
     }
     return out;
 }

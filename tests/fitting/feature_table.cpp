@@ -53,7 +53,7 @@ void write_objects(device::Device& device, SolidParts parts, const ParseOptions&
         for (const double v : {looks.height_m, looks.fill, looks.backing})
             rows.push_back(static_cast<float>(v));
     for (std::int32_t& o : object)
-        if (found.objects[static_cast<std::size_t>(o)].grounded) o = -1;
+        if (found.objects[o].grounded) o = -1;
     write(folder / "looks.f32", rows);
     write(folder / "object.i32", object);
 }

@@ -145,7 +145,7 @@ const Case& shape(int n) {
     static const std::vector<Case> all{{0, 3, 2, 4, 0},  {1, 0, 1, 1, 0},     {1, 1, 1, 1, 31},
                                        {2, 3, 3, 2, 5},  {31, 1, 1, 3, 29},   {32, 7, 1, 4, 28},
                                        {33, 5, 2, 5, 3}, {61, 13, 16, 13, 8}, {7, 37, 5, 9, 23}};
-    return all[static_cast<std::size_t>(n)];
+    return all[n];
 }
 constexpr int shapes = 9;
 

@@ -58,7 +58,7 @@ MeanInputs inputs_for(const std::vector<FittedCell>& cells, std::size_t queries,
         for (const FittedCell& c : cells) {
             const std::array<double, 8> values{c.weight,    c.query[0],  c.query[1],  c.query[2],
                                                c.normal[0], c.normal[1], c.normal[2], c.offset};
-            in.planes.push_back(static_cast<float>(values[static_cast<std::size_t>(plane)]));
+            in.planes.push_back(static_cast<float>(values[plane]));
         }
     }
     for (const FittedCell& c : cells) in.z.push_back(c.index[2]);

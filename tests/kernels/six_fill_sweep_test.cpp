@@ -122,8 +122,7 @@ TEST_P(SixFillSweep, MatchesTheWalk) {
                     for (int z = 0; z < c.dense.size[2]; ++z) {
                         for (int way = 0; way < 2; ++way) {
                             const std::uint32_t expected = expected_hit(c, {x, y, z}, axis, way);
-                            wrong += hits[static_cast<std::size_t>(way)][c.address({x, y, z})] !=
-                                     expected;
+                            wrong += hits[way][c.address({x, y, z})] != expected;
                         }
                     }
                 }

@@ -64,7 +64,7 @@ Inputs inputs_for(const std::vector<PlaneCell>& cells, std::size_t queries, int 
             const std::array<double, 10> values{
                 c.weight,       c.mean[0],      c.mean[1],      c.mean[2],      c.spread(0, 0),
                 c.spread(1, 1), c.spread(2, 2), c.spread(0, 1), c.spread(0, 2), c.spread(1, 2)};
-            in.cells.push_back(static_cast<float>(values[static_cast<std::size_t>(plane)]));
+            in.cells.push_back(static_cast<float>(values[plane]));
         }
     }
     for (int a = 0; a < 3; ++a) {

@@ -39,8 +39,7 @@ void check_labels(const std::vector<std::int32_t>& primitive,
     expect(primitive.size() == object.size(), of + ": labels are not one each");
     for (std::size_t n = 0; n < primitive.size(); ++n) {
         expect(primitive[n] >= -1 && primitive[n] < primitives, of + ": no such primitive");
-        const std::int32_t its =
-            primitive[n] < 0 ? -1 : scene.primitives[static_cast<std::size_t>(primitive[n])].object;
+        const std::int32_t its = primitive[n] < 0 ? -1 : scene.primitives[primitive[n]].object;
         expect(object[n] == its, of + ": its object is not its primitive's");
     }
 }
@@ -53,9 +52,9 @@ void check_parts(const Scene& scene) {
         double mass = 0;
         for (const std::int32_t p : o.primitives) {
             expect(p >= 0 && static_cast<std::size_t>(p) < owners.size(), "no such primitive");
-            const Primitive& primitive = scene.primitives[static_cast<std::size_t>(p)];
+            const Primitive& primitive = scene.primitives[p];
             expect(primitive.object == o.id, "a primitive is of another object");
-            ++owners[static_cast<std::size_t>(p)];
+            ++owners[p];
             mass += primitive.mass_kg;
         }
         expect(std::abs(mass - o.mass_kg) <= 1e-9 * (mass + o.mass_kg),
@@ -165,8 +164,8 @@ void check_acyclic(const std::set<std::pair<std::int32_t, std::int32_t>>& stated
     std::vector<int> carriers(objects);
     for (const auto& [supporter, supported] : stated) {
         if (stated.contains({supported, supporter})) continue;
-        carries[static_cast<std::size_t>(supporter)].push_back(static_cast<std::size_t>(supported));
-        ++carriers[static_cast<std::size_t>(supported)];
+        carries[supporter].push_back(static_cast<std::size_t>(supported));
+        ++carriers[supported];
     }
     std::vector<std::size_t> free;
     for (std::size_t n = 0; n < objects; ++n)
@@ -207,7 +206,7 @@ void check_landscape(const Object& o, const Vec3& up) {
     const Landscape& l = o.landscape;
     expect(l.now >= 0 && static_cast<std::size_t>(l.now) < l.poses.size(),
            "a landscape has no pose now");
-    const Landscape::Pose& now = l.poses[static_cast<std::size_t>(l.now)];
+    const Landscape::Pose& now = l.poses[l.now];
     for (std::size_t a = 0; a < 3; ++a)
         expect(std::abs(now.up[a] - up[a]) < 1e-6, "a landscape's pose now is another");
     double barrier = now.joins_at_J;

@@ -171,7 +171,7 @@ class Maker {
             if (nearest >= 6 || chance(random_, 0.02)) continue;
             nearest *= 1 + noise_ / 10 * normal(random_);
             for (const auto& [to, a] : {std::pair{&cloud_.x, 0}, {&cloud_.y, 1}, {&cloud_.z, 2}})
-                to->push_back(static_cast<float>(nearest * ray[static_cast<std::size_t>(a)]));
+                to->push_back(static_cast<float>(nearest * ray[a]));
             cloud_.pixel.push_back(pixel);
         }
         normals_ = false;

@@ -79,7 +79,7 @@ struct Layout {
                   pole + 0.15);
         const double bx = some(1.2, 1.5), by = some(-1.4, -1.1);
         const auto lower = thing("lower of a stack", bx, by, 0, 0.3, 0.25, some(0.15, 0.25));
-        const double under = room.objects[static_cast<std::size_t>(lower)].height_m;
+        const double under = room.objects[lower].height_m;
         const auto upper =
             thing("upper of a stack", bx + 0.05, by + 0.05, under, 0.15, 0.15, some(0.2, 0.4));
         carries[lower] = {upper};

@@ -64,9 +64,7 @@ simulation::Simulation let_go(const Scene& scene, const Solids& solids, const Ob
     bool any = false;
     std::vector<simulation::Cell> fixed;
     for (const auto& [primitive, cells] : solids.of_primitive) {
-        if (primitive < 0 ||
-            scene.primitives[static_cast<std::size_t>(primitive)].object != object.id)
-            continue;
+        if (primitive < 0 || scene.primitives[primitive].object != object.id) continue;
         body.parts.push_back(cells);
         for (const simulation::Cell& c : cells) {
             for (std::size_t a = 0; a < 3; ++a) {
@@ -79,9 +77,7 @@ simulation::Simulation let_go(const Scene& scene, const Solids& solids, const Ob
     // Far enough around for whatever stays.
     const auto reach = static_cast<std::int32_t>(std::ceil(0.1 / scene.voxel_size_m));
     for (const auto& [primitive, cells] : solids.of_primitive) {
-        if (primitive >= 0 &&
-            scene.primitives[static_cast<std::size_t>(primitive)].object == object.id)
-            continue;
+        if (primitive >= 0 && scene.primitives[primitive].object == object.id) continue;
         for (const simulation::Cell& c : cells) {
             bool near = true;
             for (std::size_t a = 0; a < 3; ++a)

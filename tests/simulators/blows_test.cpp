@@ -89,7 +89,7 @@ void judge_blows(int count) {
         const auto id = room.box(b[0], b[1], b[2], b[3], b[4], b[5], false);
         put(id, thing.parts);
         const topple::test::AssessedRoom scene(*device, room, blow_friction);
-        const auto& toppling = scene.at_risk[static_cast<std::size_t>(id)].toppling;
+        const auto& toppling = scene.at_risk[id].toppling;
         ASSERT_TRUE(toppling);
         auto blows = nlohmann::json::array();
         for (unsigned d = 0; d < safety::direction_count; ++d) {
@@ -103,7 +103,7 @@ void judge_blows(int count) {
         }
         things.push_back({{"parts", thing.parts},
                           {"fixed", thing.fixed},
-                          {"barrier_J", scene.at_risk[static_cast<std::size_t>(id)].barrier_J},
+                          {"barrier_J", scene.at_risk[id].barrier_J},
                           {"blows", blows}});
     }
     judge_by_script("blows", nlohmann::json{{"friction", blow_friction},

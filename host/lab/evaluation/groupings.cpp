@@ -26,8 +26,7 @@ std::vector<std::int32_t> bodies_of_primitives(const RoomParts& room) {
     std::vector<std::map<std::int32_t, std::uint64_t>> votes(room.parts.bodies.size());
     for (std::size_t n = 0; n < room.part.size(); ++n) {
         if (room.points.primitive[n] < 0 || room.part[n] < 0) continue;
-        ++votes[static_cast<std::size_t>(room.points.primitive[n])]
-               [body[static_cast<std::size_t>(room.part[n])]];
+        ++votes[room.points.primitive[n]][body[room.part[n]]];
     }
     std::vector<std::int32_t> out;
     for (const auto& of_primitive : votes) {
@@ -42,16 +41,13 @@ std::vector<std::int32_t> bodies_of_primitives(const RoomParts& room) {
 std::vector<Support> supports_between(const graph::ContactGraph& contacts,
                                       std::span<const std::int32_t> object_of_primitive,
                                       const std::vector<bool>& grounded) {
-    const auto object = [&](std::int32_t p) {
-        return object_of_primitive[static_cast<std::size_t>(p)];
-    };
+    const auto object = [&](std::int32_t p) { return object_of_primitive[p]; };
     std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
     for (const graph::Carrying& c : contacts.carryings) {
         if (c.supporter < 0) continue;
         const auto pair = std::pair(object(c.supporter), object(c.supported));
         // The ground carries, and nothing carries it, though fragments of it may lie on things.
-        if (pair.first != pair.second && !grounded[static_cast<std::size_t>(pair.second)])
-            carried[pair] += c.area_m2;
+        if (pair.first != pair.second && !grounded[pair.second]) carried[pair] += c.area_m2;
     }
     std::vector<Support> supports;
     for (const auto& [pair, area] : carried) supports.push_back({pair.first, pair.second, area});
@@ -72,7 +68,7 @@ scenes::RelationScore judged(const RoomParts& room, const std::vector<std::int32
     Scene scene;
     scene.supports = supports_between(room.parts.contacts, object, grounded);
     for (const std::int32_t p : room.points.primitive)
-        scene.points.object.push_back(p < 0 ? -1 : object[static_cast<std::size_t>(p)]);
+        scene.points.object.push_back(p < 0 ? -1 : object[p]);
     return scenes::relation_score(room.world, scene, room.part);
 }
 

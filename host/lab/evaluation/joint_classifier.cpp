@@ -69,7 +69,7 @@ JointWeights fit_joints(std::span<const JointFeatures> joints, const std::vector
         Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
         Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);
         for (Eigen::Index k = 1; k < n; ++k) {
-            slope[k] = ridge * weights[static_cast<std::size_t>(k)];
+            slope[k] = ridge * weights[k];
             curvature(k, k) = ridge;
         }
         for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -81,8 +81,7 @@ JointWeights fit_joints(std::span<const JointFeatures> joints, const std::vector
         curvature(0, 0) += 1e-9;  // where all are fixed, or none
         const Eigen::VectorXd move = curvature.ldlt().solve(slope);
         const double scale = std::min(1.0, 5 / std::max(move.norm(), 1e-300));
-        for (Eigen::Index k = 0; k < n; ++k)
-            weights[static_cast<std::size_t>(k)] -= scale * move[k];
+        for (Eigen::Index k = 0; k < n; ++k) weights[k] -= scale * move[k];
         if (move.norm() < 1e-10) break;
     }
     return weights;

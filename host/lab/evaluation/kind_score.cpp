@@ -80,8 +80,7 @@ class Judge {
             if (o.grounded) grounded_.insert(o.id);
         }
         std::vector<double> seen(world.objects.size());
-        for (const auto& p : scan.truth)
-            seen[static_cast<std::size_t>(p.object)] += scan.truth_m * scan.truth_m;
+        for (const auto& p : scan.truth) seen[p.object] += scan.truth_m * scan.truth_m;
         for (std::size_t n = 1; n < fixed_.size(); ++n) {
             const auto id = static_cast<Id>(n);
             const auto points = objects_.truth.find(id);
@@ -113,7 +112,7 @@ class Judge {
     }
     bool is_grounded(Id found) const { return grounded_.contains(found); }
     // Everything that is fixed to the building is object 0; every grounded found object is -2.
-    Id true_body(Id object) const { return fixed_[static_cast<std::size_t>(object)] ? 0 : object; }
+    Id true_body(Id object) const { return fixed_[object] ? 0 : object; }
     Id found_body(Id object) const { return is_grounded(object) ? -2 : object; }
 
     void shares(KindScore& out) const {
@@ -171,7 +170,7 @@ class Judge {
         const auto match = objects_.matches();
         std::size_t hits = 0, of = 0;
         for (const Id object : judged_) {
-            for (const Id s : below_[static_cast<std::size_t>(object)]) {
+            for (const Id s : below_[object]) {
                 const auto points = objects_.truth.find(s);
                 if (points == objects_.truth.end() || points->second < least_points) continue;
                 ++of;

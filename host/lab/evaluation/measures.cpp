@@ -117,8 +117,7 @@ TrueMeasures true_measures(const scenes::World& world, std::int32_t object, doub
     // So that the side of a round body is one pose.
     const physics::HullLandscape landscape = physics::hull_landscape(
         scenes::hull_points(world, object), out.center_of_mass_m, {.resolution_m = 1e-5});
-    out.barrier_J = out.mass_kg * physics::gravity *
-                    landscape.poses[static_cast<std::size_t>(landscape.now)].barrier_m;
+    out.barrier_J = out.mass_kg * physics::gravity * landscape.poses[landscape.now].barrier_m;
     return out;
 }
 

@@ -112,8 +112,7 @@ int Blueprint::leg(const char* part, double x, double y, double bottom, double t
 }
 
 void Blueprint::rungs(int left, int right, int count, double diameter) {
-    const Part a = parts[static_cast<std::size_t>(left)],
-               b = parts[static_cast<std::size_t>(right)];
+    const Part a = parts[left], b = parts[right];
     const double length = b.center[0] - a.center[0] - a.size[0];
     for (int k = 1; k <= count; ++k) {
         const double up = a.size[2] * (static_cast<double>(k) / (count + 1) - 0.5);
@@ -149,14 +148,14 @@ void Blueprint::arm(int base, const Vec3& from, const std::vector<Segment>& segm
     const double height = 0.8 * shade;
     const int lamp =
         bar("shade", beyond(at, across, ball + height), beyond(at, across, ball), shade);
-    Part& part = parts[static_cast<std::size_t>(lamp)];
+    Part& part = parts[lamp];
     part.shape = Shape::cone;
     part.top_ratio = 0.4;
     join(last, lamp);
 }
 
 void Blueprint::stand_on(int part, double clearance, const char* where, double rim) {
-    const Part& p = parts[static_cast<std::size_t>(part)];
+    const Part& p = parts[part];
     // The square inside a disc.
     const bool square = p.shape == Shape::box || p.shape == Shape::rounded_box;
     const double share = square ? 0.5 : 0.5 * 0.7071;

@@ -68,7 +68,7 @@ Blueprint make_desk(Random& random) {
     }
     b.join(top, right);
     const double inner_low = -w / 2 + panel;
-    const double inner_high = b.parts[static_cast<std::size_t>(right)].bounds()[0][0];
+    const double inner_high = b.parts[right].bounds()[0][0];
     const double mid = (inner_low + inner_high) / 2;
     const int back =
         b.box("backboard", mid, -d / 2 + 0.05, h - t - 0.35, {inner_high - inner_low, 0.025, 0.35});

@@ -41,9 +41,7 @@ solids::Profile vessel_within(const Side& side, double wall, double floor) {
 
 Side smooth_side(const std::vector<double>& radii, double height) {
     const auto last = static_cast<int>(radii.size()) - 1;
-    const auto radius = [&](int n) {
-        return radii[static_cast<std::size_t>(std::clamp(n, 0, last))];
-    };
+    const auto radius = [&](int n) { return radii[std::clamp(n, 0, last)]; };
     Side side;
     for (int n = 0; n < last; ++n) {
         const double a = radius(n - 1), b = radius(n), c = radius(n + 1), d = radius(n + 2);

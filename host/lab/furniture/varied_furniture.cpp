@@ -126,9 +126,8 @@ Blueprint make_cube_shelf(Random& random) {
     }
     for (int row = 0; row < rows; ++row) {
         for (int c = 0; c < columns; ++c) {
-            b.surfaces.push_back({boards[static_cast<std::size_t>(row)],
-                                  -w / 2 + t / 2 + (c + 0.5) * cell, 0, (cell - t) / 2 - 0.015,
-                                  d / 2 - 0.01, cell - t - 0.02, "shelf"});
+            b.surfaces.push_back({boards[row], -w / 2 + t / 2 + (c + 0.5) * cell, 0,
+                                  (cell - t) / 2 - 0.015, d / 2 - 0.01, cell - t - 0.02, "shelf"});
         }
     }
     b.stand_on(boards.back(), 0.4, "shelf");

@@ -189,7 +189,7 @@ std::array<double, 2> reach(const Group& group, double yaw) {
     for (const Member& m : group) {
         if (m.on >= 0) continue;
         for (const int foot : m.blueprint.feet) {
-            const Part& part = m.blueprint.parts[static_cast<std::size_t>(foot)];
+            const Part& part = m.blueprint.parts[foot];
             const auto box = moved({0, 0, 0, yaw}, moved(m.pose, part)).bounds();
             for (std::size_t a = 0; a < 2; ++a)
                 most[a] = std::max({most[a], -box[0][a], box[1][a]});

@@ -112,8 +112,8 @@ World with_shell(World room, std::vector<Part> shell) {
     for (std::size_t wall = 1; wall <= 4; ++wall) place[wall] = 2;
     for (auto* pairs : {&room.fixed, &room.support}) {
         for (auto& [a, b] : *pairs) {
-            a = place[static_cast<std::size_t>(a)];
-            b = place[static_cast<std::size_t>(b)];
+            a = place[a];
+            b = place[b];
         }
     }
     room.parts = std::move(parts);

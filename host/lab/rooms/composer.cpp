@@ -71,12 +71,12 @@ bool Composer::stand(const Blueprint& blueprint, const Pose& pose,
     std::vector<std::pair<std::int32_t, int>> carried;  // by what, which foot
     std::vector<Contact> contacts;
     for (const int foot : blueprint.feet) {
-        const Part part = moved(pose, blueprint.parts[static_cast<std::size_t>(foot)]);
+        const Part part = moved(pose, blueprint.parts[foot]);
         const auto box = part.bounds();
         for (const std::int32_t below : supporters) {
-            if (!overlap(boxes_[static_cast<std::size_t>(below)], box, 0.002)) continue;
+            if (!overlap(boxes_[below], box, 0.002)) continue;
             carried.emplace_back(below, foot);
-            contacts.emplace_back(&world_.parts[static_cast<std::size_t>(below)], part);
+            contacts.emplace_back(&world_.parts[below], part);
         }
         // Nothing stands on the floor's outer edge.
         for (std::size_t a = 0; a < 2 && where == "floor"; ++a) {
@@ -113,8 +113,7 @@ bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempt
             turn = random_(-0.15, 0.15);
             off += std::abs(turn) * (box[1][0] - box[0][0]) / 2 + 0.02;
         } else if (random_.chance(0.5) && !placed_.empty()) {  // flush with a neighbour
-            const Placed& next = placed_[static_cast<std::size_t>(
-                random_.integer(0, static_cast<int>(placed_.size()) - 1))];
+            const Placed& next = placed_[random_.integer(0, static_cast<int>(placed_.size()) - 1)];
             const auto its = next.blueprint.bounds();
             const double at = wall < 2 ? next.pose.x : next.pose.y;
             const double reach = mirrored ? -its[0][0] : its[1][0];
@@ -153,7 +152,7 @@ bool Composer::on_wall(const Blueprint& blueprint, double height) {
     const auto box = blueprint.bounds();
     for (int attempt = 0; attempt < 25; ++attempt) {
         const int wall = any_wall();
-        if (wall_part_[static_cast<std::size_t>(wall)] < 0) continue;
+        if (wall_part_[wall] < 0) continue;
         const double half = std::max(box[1][0], -box[0][0]), length = wall_length(wall);
         if (2 * half > length || height + box[1][2] > world_.room[2]) continue;
         const Pose pose =
@@ -204,11 +203,11 @@ bool Composer::before(std::size_t table, int side, const Blueprint& chair) {
 
 std::vector<std::int32_t> Composer::deck(std::size_t index, const Surface& surface) const {
     const Placed& base = placed_[index];
-    const Part& carrier = world_.parts[static_cast<std::size_t>(base.first_part + surface.part)];
+    const Part& carrier = world_.parts[base.first_part + surface.part];
     std::vector<std::int32_t> deck;
     for (std::size_t k = 0; k < base.blueprint.parts.size(); ++k) {
         const auto id = base.first_part + static_cast<std::int32_t>(k);
-        const Part& part = world_.parts[static_cast<std::size_t>(id)];
+        const Part& part = world_.parts[id];
         if (part.name == carrier.name && std::abs(part.top() - carrier.top()) < 1e-6)
             deck.push_back(id);
     }
@@ -223,15 +222,14 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
     if (high > surface.clearance) return false;
     const Placed base = placed_[index];
     const std::vector<std::int32_t> supporters = deck(index, surface);
-    const double top = world_.parts[static_cast<std::size_t>(base.first_part + surface.part)].top();
+    const double top = world_.parts[base.first_part + surface.part].top();
     for (int attempt = 0; attempt < 12; ++attempt) {
         const double yaw = random_.chance(0.45)  ? 0
                            : random_.chance(0.5) ? random_(-0.25, 0.25)
                                                  : random_(-pi, pi);
         Vec3 low{1e9, 1e9, 0}, high_corner{-1e9, -1e9, 0};
         for (const int foot : stack.front().feet) {
-            const auto box =
-                moved({0, 0, 0, yaw}, stack.front().parts[static_cast<std::size_t>(foot)]).bounds();
+            const auto box = moved({0, 0, 0, yaw}, stack.front().parts[foot]).bounds();
             for (std::size_t a = 0; a < 2; ++a) {
                 low[a] = std::min(low[a], box[0][a]);
                 high_corner[a] = std::max(high_corner[a], box[1][a]);
@@ -296,7 +294,7 @@ bool Composer::leaning(const Blueprint& blueprint) {
         const int wall = any_wall();
         const double along = random_(0.2, wall_length(wall) - 0.2);
         const Pose pose = against_wall(wall, along, -blueprint.back(), 0, 0);
-        if (wall_part_[static_cast<std::size_t>(wall)] < 0) continue;
+        if (wall_part_[wall] < 0) continue;
         if (stand(blueprint, pose, {0}, "wall")) return true;
     }
     return false;

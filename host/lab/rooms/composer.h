@@ -68,7 +68,7 @@ class Composer : public RoomMaker {
     using RoomMaker::against_wall;
     double wall_length(int wall) const { return world_.room[wall < 2 ? 0 : 1]; }
     const std::vector<int>& walls() const { return walls_; }  // that stand
-    int any_wall() { return walls_[static_cast<std::size_t>(random_.integer(0, last_wall()))]; }
+    int any_wall() { return walls_[random_.integer(0, last_wall())]; }
     double skirting() const { return skirting_; }  // m that it keeps furniture off the walls
     // Solids of the building itself.
     std::int32_t add_building(Part part) { return add_own(std::move(part)); }

@@ -173,7 +173,7 @@ std::optional<Furnisher::Spot> Furnisher::spot_on(const Placed& base, const Surf
         const double room_x = surface.half_x - far[0], room_y = surface.half_y - far[1];
         if (room_x < 0 || room_y < 0) continue;
         const double u = random_(-room_x, room_x), v = random_(-room_y, room_y);
-        const Part& carrier = base.blueprint.parts[static_cast<std::size_t>(surface.part)];
+        const Part& carrier = base.blueprint.parts[surface.part];
         const Vec3 p = moved(base.pose, Vec3{surface.x + u, surface.y + v, carrier.top()});
         const Pose pose{p[0], p[1], p[2], base.pose.yaw + yaw};
         if (!free(pose)) continue;

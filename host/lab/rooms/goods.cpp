@@ -33,7 +33,7 @@ void load_pallet(Composer& room, std::size_t index) {
                 if (layer == 0) load.feet.push_back(box);
                 continue;
             }
-            std::int32_t& carrier = below[static_cast<std::size_t>(k)];
+            std::int32_t& carrier = below[k];
             if (layer > 0 && (carrier < 0 || random.chance(0.25))) {
                 carrier = -1;
                 continue;

@@ -23,7 +23,7 @@ void shelve_books(Composer& room, std::size_t index, const BookcaseMake& make) {
         const Blueprint books = make_books(random, length, s.clearance, 2 * s.half_y, make.flush);
         const double out = random.chance(0.5) ? -1 : 1;
         const bool behind = make.two_sided && s.y < 0;
-        const Part& board = at.blueprint.parts[static_cast<std::size_t>(s.part)];
+        const Part& board = at.blueprint.parts[s.part];
         const Vec3 p =
             moved(at.pose, Vec3{s.x + out * (s.half_x - length / 2 - 0.001), s.y, board.top()});
         room.stand(books, {p[0], p[1], p[2], at.pose.yaw + (behind ? pi : 0)},

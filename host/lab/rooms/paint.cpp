@@ -92,7 +92,7 @@ const Habit* habit(const Habits& habits, const std::string& name) {
 
 Material pick(const Habit* h, Random& random) {
     if (h == nullptr || random.chance(0.1)) return any;
-    return h->of[static_cast<std::size_t>(random.integer(0, 2))];
+    return h->of[random.integer(0, 2)];
 }
 
 std::array<std::uint8_t, 3> bytes(const Rgb& rgb) {

@@ -40,10 +40,10 @@ void Composer::build(const Shell& shell) {
         each = random_.chance(low) ? random_(0.9, h) : h;
         ++stands;
     }
-    if (stands == 0) height[static_cast<std::size_t>(random_.integer(0, 3))] = h;
+    if (stands == 0) height[random_.integer(0, 3)] = h;
     int windows = random_.integer(0, shell.windows), doors = random_.integer(0, shell.doors);
     for (int wall = 0; wall < 4; ++wall) {
-        const double high = height[static_cast<std::size_t>(wall)];
+        const double high = height[wall];
         if (high == 0) continue;
         walls_.push_back(wall);
         std::vector<Opening> openings;
@@ -68,7 +68,7 @@ void Composer::build(const Shell& shell) {
 
 void Composer::build_wall(int wall, double height, const std::vector<Opening>& openings) {
     const double length = wall_length(wall);
-    wall_part_[static_cast<std::size_t>(wall)] = static_cast<std::int32_t>(world_.parts.size());
+    wall_part_[wall] = static_cast<std::int32_t>(world_.parts.size());
     double from = -thickness_;
     for (const Opening& o : openings) {
         wall_piece(wall, "wall", from, o.from, 0, height, 0, thickness_);

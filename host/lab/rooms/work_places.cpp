@@ -130,7 +130,7 @@ void furnish_storage(Composer& room) {
         constexpr std::array<BlueprintMake, 4> makes{make_step_ladder, make_bucket, make_drum,
                                                      make_trolley};
         if (what < 4) {
-            const bool done = room.anywhere(makes[static_cast<std::size_t>(what)](random));
+            const bool done = room.anywhere(makes[what](random));
             if (done && what == 3) room.fill(room.last(), 4, make_store_item);
             continue;
         }

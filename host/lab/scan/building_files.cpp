@@ -92,7 +92,7 @@ class TruthWriter {
         const World& world = room.world;
         std::vector<std::set<std::uint64_t>> rests(world.objects.size()), fixed(rests.size());
         const auto object_of = [&](std::int32_t part) {
-            return static_cast<std::size_t>(world.parts[static_cast<std::size_t>(part)].object);
+            return static_cast<std::size_t>(world.parts[part].object);
         };
         const auto id = [&](std::size_t object) {
             return object == 0 ? 0 : first_object + object - 1;

@@ -49,13 +49,13 @@ void drop_edges(const Intrinsics& k, const std::vector<double>& z,
     const auto w = static_cast<std::int64_t>(k.width), h = static_cast<std::int64_t>(k.height);
     for (std::int64_t v = 0; v < h; ++v) {
         for (std::int64_t u = 0; u < w; ++u) {
-            const double here = z[static_cast<std::size_t>(v * w + u)];
+            const double here = z[v * w + u];
             const double limit = std::max(0.04, 0.06 * here);
             for (const auto& [du, dv] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
                 const std::int64_t a = u + du, b = v + dv;
                 if (a < 0 || b < 0 || a >= w || b >= h) continue;
-                if (!(std::abs(z[static_cast<std::size_t>(b * w + a)] - here) < limit)) {
-                    depth[static_cast<std::size_t>(v * w + u)] = 0;
+                if (!(std::abs(z[b * w + a] - here) < limit)) {
+                    depth[v * w + u] = 0;
                 }
             }
         }
@@ -101,7 +101,7 @@ Mat4 single_pose(const World& world) {
             look_at(eye, {eye[0] + std::cos(angle), eye[1] + std::sin(angle), eye[2] - 0.45});
         double seen = 0;
         for (const auto& [supporter, part] : world.support) {
-            const Vec3& c = world.parts[static_cast<std::size_t>(part)].center;
+            const Vec3& c = world.parts[part].center;
             const Vec3 to = unit(minus(c, eye));
             if (to[0] * pose[2] + to[1] * pose[6] + to[2] * pose[10] > 0.88)
                 seen += supporter == 0 ? 1 : 2;
@@ -157,8 +157,8 @@ std::vector<std::int16_t> render(const World& world, const CameraOptions& option
         double z = hit.distance * ray.z_share;
         exact[at] = z;
         if (options.noise) {
-            const Vec3 normal = world.parts[static_cast<std::size_t>(hit.part)].normal(
-                along(eye, hit.distance, ray.direction));
+            const Vec3 normal =
+                world.parts[hit.part].normal(along(eye, hit.distance, ray.direction));
             z = noisy(z, std::abs(dot(normal, ray.direction)), options, random);
         }
         const double stored = std::round(z * k.depth_scale);

@@ -84,7 +84,7 @@ RoomScan::RoomScan(const World& world, const std::vector<Vec3>& stations, unsign
 
 std::int32_t RoomScan::object(std::size_t patch) const {
     const Sheet& sheet = sheets_[seen_[patch].patch.sheet];
-    return world_.parts[static_cast<std::size_t>(sheet.part)].object;
+    return world_.parts[sheet.part].object;
 }
 
 // Whether all within `radius` of p keeps its distance from all parts but one, none of it, or some.

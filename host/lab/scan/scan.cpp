@@ -282,7 +282,7 @@ class Scanner {
                 const auto hit = caster_.cast(eye, d);
                 const double last = std::exchange(before, hit.part < 0 ? 0 : hit.distance);
                 if (hit.part < 0 || hit.distance < 0.4 || hit.distance > 25) continue;
-                const Part& part = world_.parts[static_cast<std::size_t>(hit.part)];
+                const Part& part = world_.parts[hit.part];
                 const Vec3 p = along(eye, hit.distance, d), normal = part.normal(p);
                 points.push_back({p, part.object});
                 const double cosine = std::abs(dot(normal, d));

@@ -51,7 +51,7 @@ nlohmann::json box_of(const World& world, std::int32_t object) {
 
 nlohmann::json objects_json(const World& world, const Scan& scan) {
     std::vector<std::size_t> points(world.objects.size());
-    for (const LabelledPoint& p : scan.truth) ++points[static_cast<std::size_t>(p.object)];
+    for (const LabelledPoint& p : scan.truth) ++points[p.object];
     const auto fixed = fixed_objects(world);
     const auto below = supporters(world);
     std::vector<bool> kept(world.objects.size());
@@ -59,7 +59,7 @@ nlohmann::json objects_json(const World& world, const Scan& scan) {
     for (std::size_t n = kept.size(); n-- > 1;) {  // carriers come before what they carry
         kept[n] = kept[n] || points[n] > 0;
         if (!kept[n]) continue;
-        for (const std::int32_t s : below[n]) kept[static_cast<std::size_t>(s)] = true;
+        for (const std::int32_t s : below[n]) kept[s] = true;
     }
     nlohmann::json list = nlohmann::json::array();
     for (std::size_t n = 0; n < kept.size(); ++n) {
@@ -88,9 +88,8 @@ nlohmann::json objects_json(const World& world, const Scan& scan) {
 std::vector<std::vector<std::int32_t>> supporters(const World& world) {
     std::vector<std::vector<std::int32_t>> out(world.objects.size());
     for (const auto& [below, above] : world.support) {
-        const std::int32_t a = world.parts[static_cast<std::size_t>(below)].object,
-                           b = world.parts[static_cast<std::size_t>(above)].object;
-        if (a != b) out[static_cast<std::size_t>(b)].push_back(a);
+        const std::int32_t a = world.parts[below].object, b = world.parts[above].object;
+        if (a != b) out[b].push_back(a);
     }
     for (auto& list : out) {
         std::sort(list.begin(), list.end());
@@ -103,7 +102,7 @@ std::vector<bool> fixed_objects(const World& world) {
     std::vector<bool> fixed(world.objects.size());
     fixed[0] = true;
     const auto object = [&](std::int32_t part) {
-        return static_cast<std::size_t>(world.parts[static_cast<std::size_t>(part)].object);
+        return static_cast<std::size_t>(world.parts[part].object);
     };
     for (bool changed = true; changed;) {
         changed = false;

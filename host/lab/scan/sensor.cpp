@@ -49,7 +49,7 @@ ExactView look(const RayCaster& caster, const Intrinsics& k, const Mat4& camera_
         const auto hit = caster.cast(eye, d);
         if (hit.part < 0) continue;
         const Vec3 p = along(eye, hit.distance, d);
-        const Part& part = caster.parts()[static_cast<std::size_t>(hit.part)];
+        const Part& part = caster.parts()[hit.part];
         const Vec3 normal = part.normal(p);
         view.depth[at] = static_cast<float>(hit.distance / length);
         view.cosine[at] = static_cast<float>(std::abs(dot(normal, d)));

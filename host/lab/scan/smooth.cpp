@@ -37,9 +37,9 @@ void smooth_line(float* values, std::size_t count, std::size_t step,
         double sum = 0;
         for (std::int64_t k = -reach; k <= reach; ++k) {
             const auto at = static_cast<std::size_t>(std::clamp<std::int64_t>(n + k, 0, last));
-            sum += weights[static_cast<std::size_t>(k + reach)] * values[at * step];
+            sum += weights[k + reach] * values[at * step];
         }
-        line[static_cast<std::size_t>(n)] = static_cast<float>(sum);
+        line[n] = static_cast<float>(sum);
     }
     for (std::size_t n = 0; n < count; ++n) values[n * step] = line[n];
 }

@@ -40,8 +40,7 @@ class FreePlaces {
         return {(k % columns_ + 0.5) * cell, (k / columns_ + 0.5) * cell, height_};
     }
     int any(Random& random) const {
-        return places_[static_cast<std::size_t>(
-            random.integer(0, static_cast<int>(places_.size()) - 1))];
+        return places_[random.integer(0, static_cast<int>(places_.size()) - 1)];
     }
 
     // A shortest way, both ends included.
@@ -178,8 +177,7 @@ double things_in_view(const World& world, const RayCaster& caster, const Mat4& p
             for (std::size_t a = 0; a < 3; ++a)
                 d[a] = (pose[4 * a] * x + pose[4 * a + 1] * y + pose[4 * a + 2]) / length;
             const auto hit = caster.cast({pose[3], pose[7], pose[11]}, d);
-            if (hit.part >= 0 && hit.distance < 4)
-                ++seen[world.parts[static_cast<std::size_t>(hit.part)].object];
+            if (hit.part >= 0 && hit.distance < 4) ++seen[world.parts[hit.part].object];
         }
     }
     double score = 0;
@@ -268,7 +266,7 @@ Mat4 best_view(const World& world, const RayCaster& caster, Random& random) {
         for (int k = 0; k < 6; ++k) {
             const Vec3 eye = free.place(free.any(random));
             const auto n = random.integer(0, static_cast<int>(things.size()) - 1);
-            Vec3 at = things[static_cast<std::size_t>(n)];
+            Vec3 at = things[n];
             const double d = distance(at, eye);
             if (d < 0.6 || d > 3.0 || at[2] > eye[2] + 0.3) continue;
             if (std::hypot(at[0] - eye[0], at[1] - eye[1]) < 0.2) continue;

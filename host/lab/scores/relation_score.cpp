@@ -49,8 +49,7 @@ std::vector<std::int32_t> true_bodies(const World& truth) {
     std::vector<std::int32_t> body;
     for (const Part& part : truth.parts) body.push_back(part.object);
     for (const auto& [a, b] : truth.fixed) {
-        const std::int32_t from = body[static_cast<std::size_t>(a)],
-                           to = body[static_cast<std::size_t>(b)];
+        const std::int32_t from = body[a], to = body[b];
         if (from != to) std::replace(body.begin(), body.end(), from, to);
     }
     return body;

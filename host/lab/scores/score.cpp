@@ -50,8 +50,7 @@ std::vector<std::int32_t> true_parts(const World& truth, const ScenePoints& poin
 
 std::vector<std::int32_t> true_objects(const World& truth, const std::vector<std::int32_t>& part) {
     std::vector<std::int32_t> object;
-    for (const std::int32_t p : part)
-        object.push_back(p < 0 ? -1 : truth.parts[static_cast<std::size_t>(p)].object);
+    for (const std::int32_t p : part) object.push_back(p < 0 ? -1 : truth.parts[p].object);
     return object;
 }
 

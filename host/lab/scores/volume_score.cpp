@@ -119,7 +119,7 @@ std::vector<Verdict> verdicts(const World& truth, const SolidVoxels& solid, doub
             bool in_room = false;
             double near = infinity;
             parts.each_near(p, 2 * h, [&](std::int32_t part, double d) {
-                if (truth.parts[static_cast<std::size_t>(part)].object != 0)
+                if (truth.parts[part].object != 0)
                     near = std::min(near, d);
                 else
                     in_room = in_room || d < 1.5 * h;

@@ -28,18 +28,18 @@ class Walk {
         int depth = 0;
         left[0] = 1;
         while (depth >= 0) {
-            if (left[static_cast<std::size_t>(depth)] == 0) {
+            if (left[depth] == 0) {
                 --depth;
                 continue;
             }
-            --left[static_cast<std::size_t>(depth)];
+            --left[depth];
             const int children = binary_ ? binary_node() : node();
             if (children == 0) continue;
             if (++depth > octomap_depth - (binary_ ? 1 : 0)) {
                 fail(file_, "its tree is deeper than the " + std::to_string(octomap_depth) +
                                 " levels of an OctoMap; the file is damaged");
             }
-            left[static_cast<std::size_t>(depth)] = children;
+            left[depth] = children;
         }
         return at_;
     }

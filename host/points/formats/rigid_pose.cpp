@@ -40,8 +40,7 @@ std::optional<std::string> make_rigid(Mat4& m) {
     if (auto fault = position_fault({m[3], m[7], m[11]})) return fault;
     Eigen::Matrix3d r;
     for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column)
-            r(row, column) = m[static_cast<std::size_t>(row * 4 + column)];
+        for (int column = 0; column < 3; ++column) r(row, column) = m[row * 4 + column];
     }
     const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (error <= rotation_tolerance && r.determinant() < 0)
@@ -54,8 +53,7 @@ std::optional<std::string> make_rigid(Mat4& m) {
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
     for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column)
-            m[static_cast<std::size_t>(row * 4 + column)] = nearest(row, column);
+        for (int column = 0; column < 3; ++column) m[row * 4 + column] = nearest(row, column);
     }
     for (std::size_t i = 12; i < 15; ++i) m[i] = 0;
     m[15] = 1;

@@ -44,7 +44,7 @@ void add_block(Tree& tree, const std::array<std::int32_t, 3>& low,
         std::all_of(states.begin(), states.end(), [](std::uint8_t s) { return s == empty; });
     if (all_free && tree.getRoot()) return free_block(tree, key_of(low[0], low[1], low[2]));
     for (std::int32_t n = 0; n < 512; ++n) {
-        const std::uint8_t state = states[static_cast<std::size_t>(n)];
+        const std::uint8_t state = states[n];
         if (state != empty && state != surface) continue;
         tree.setNodeValue(
             key_of(low[0] + (n >> 6), low[1] + (n >> 3 & 7), low[2] + (n & 7)),

@@ -98,7 +98,7 @@ std::vector<bool> open_hits(const SolidCells& solid, const Columns& columns, con
         // in one column share it, up to 64.
         const double across = hits.low + (static_cast<double>(bin) + 0.5) / bins_per_voxel;
         for (std::int64_t layer = 0; layer < hits.layers;) {
-            const std::int64_t c = hits.cell[static_cast<std::size_t>(layer * hits.bins + bin)];
+            const std::int64_t c = hits.cell[layer * hits.bins + bin];
             if (c < 0) {
                 ++layer;
                 continue;
@@ -107,7 +107,7 @@ std::vector<bool> open_hits(const SolidCells& solid, const Columns& columns, con
             std::uint64_t asked = 0;
             std::int64_t run = 0;
             for (; run < 64 && layer + run < hits.layers; ++run) {
-                const auto n = hits.cell[static_cast<std::size_t>((layer + run) * hits.bins + bin)];
+                const auto n = hits.cell[(layer + run) * hits.bins + bin];
                 if (n < 0) continue;
                 const auto cell = static_cast<std::size_t>(n);
                 if (solid.i[cell] != solid.i[first] || solid.j[cell] != solid.j[first]) break;
@@ -118,8 +118,7 @@ std::vector<bool> open_hits(const SolidCells& solid, const Columns& columns, con
                 columns, along * dx - across * dy, along * dy + across * dx, solid.k[first], asked,
                 solid.i[first], solid.j[first], dx, dy, shelter);
             for (std::int64_t r = 0; r < run; ++r) {
-                if (reached >> r & 1)
-                    open[static_cast<std::size_t>((layer + r) * hits.bins + bin)] = true;
+                if (reached >> r & 1) open[(layer + r) * hits.bins + bin] = true;
             }
             layer += run;
         }
@@ -311,7 +310,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
             for (const std::uint32_t c : front.cells) {
                 const auto n =
                     std::lower_bound(cells[o].begin(), cells[o].end(), c) - cells[o].begin();
-                auto& sum = wind[static_cast<std::size_t>(n)];
+                auto& sum = wind[n];
                 sum = {sum[0] + static_cast<float>(dx), sum[1] + static_cast<float>(dy),
                        sum[2] + 1};
                 out.exposure[c] += 1.0f / directions;

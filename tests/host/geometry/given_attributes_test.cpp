@@ -22,7 +22,7 @@ PointCloud corner() {
             std::array<float, 3> p{}, n{};
             for (std::size_t a = 0; a < 3; ++a)
                 p[a] = std::size_t(axis) == a ? noise() : static_cast<float>(random.uniform());
-            n[static_cast<std::size_t>(axis)] = 1;
+            n[axis] = 1;
             out.x.push_back(p[0]);
             out.y.push_back(p[1]);
             out.z.push_back(p[2]);

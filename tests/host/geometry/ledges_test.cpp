@@ -126,7 +126,7 @@ TEST(Ledges, MergingPartsAStack) {
     std::array<std::int32_t, 4> label;
     for (int body = 0; body < 4; ++body) {
         const auto most = majority(scene, surfels, primitives.label, body);
-        label[static_cast<std::size_t>(body)] = most.label;
+        label[body] = most.label;
         EXPECT_GT(most.share, 0.7) << "body " << body;
     }
     EXPECT_EQ(std::set(label.begin(), label.end()).size(), 4u);

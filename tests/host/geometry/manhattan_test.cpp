@@ -93,7 +93,7 @@ TEST_F(Manhattan, FindsUpOfTiltedRooms) {
             EXPECT_LT(degrees_off(frame.axes[0], turn * Vector3d(1, 0, 0)), 0.3);
             Eigen::Matrix3d axes;
             for (int i = 0; i < 3; ++i) {
-                const Vec3& a = frame.axes[static_cast<std::size_t>(i)];
+                const Vec3& a = frame.axes[i];
                 axes.row(i) << a[0], a[1], a[2];
             }
             EXPECT_NEAR(axes.determinant(), 1, 1e-9);

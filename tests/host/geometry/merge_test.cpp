@@ -152,7 +152,7 @@ TEST(Merge, IdsFallInSizeAndCoverTheRegions) {
     const PrimitiveSet primitives = merged(scene.surfels());
     std::vector<std::uint64_t> count(primitives.regions.size(), 0);
     for (const std::int32_t label : primitives.label)
-        if (label >= 0) ++count[static_cast<std::size_t>(label)];
+        if (label >= 0) ++count[label];
     for (std::size_t k = 1; k < count.size(); ++k) EXPECT_GE(count[k - 1], count[k]);
     EXPECT_EQ(primitives.model.size(), count.size());
     EXPECT_EQ(primitives.model.front(), "plane");

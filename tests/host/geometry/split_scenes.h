@@ -83,8 +83,7 @@ struct Builder {
         for (std::size_t i = 0; i < points.size(); ++i) {
             Cell c;
             for (int a = 0; a < 3; ++a)
-                c[static_cast<std::size_t>(a)] =
-                    static_cast<std::int32_t>(std::floor(points[i][a] / cell_m));
+                c[a] = static_cast<std::int32_t>(std::floor(points[i][a] / cell_m));
             cells[c].push_back(i);
         }
         Surfels s;

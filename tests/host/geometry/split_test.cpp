@@ -72,9 +72,7 @@ TEST(Split, ThickWallIsOneRegion) {
     const Surfels s = scene.surfels();
     const Regions regions = split(s);
     EXPECT_GT(majority(scene, s, regions.label, 0).share, 0.98);
-    EXPECT_EQ(regions.regions[static_cast<std::size_t>(majority(scene, s, regions.label, 0).label)]
-                  .model.degree,
-              1);
+    EXPECT_EQ(regions.regions[majority(scene, s, regions.label, 0).label].model.degree, 1);
 }
 
 TEST(Split, CurvedSurfacesStayInOnePiece) {
@@ -89,8 +87,7 @@ TEST(Split, CurvedSurfacesStayInOnePiece) {
     for (int body = 0; body < 3; ++body) {
         const auto most = majority(scene, s, regions.label, body);
         EXPECT_GT(most.share, 0.95) << "body " << body;
-        EXPECT_EQ(regions.regions[static_cast<std::size_t>(most.label)].model.degree, 2)
-            << "body " << body;
+        EXPECT_EQ(regions.regions[most.label].model.degree, 2) << "body " << body;
     }
 }
 
@@ -106,7 +103,7 @@ TEST(Split, FacesOfABoxAreSeparatePlanes) {
     for (int face = 0; face < 3; ++face) {
         const auto most = majority(scene, s, regions.label, face);
         EXPECT_GT(most.share, 0.93) << "face " << face;
-        EXPECT_EQ(regions.regions[static_cast<std::size_t>(most.label)].model.degree, 1);
+        EXPECT_EQ(regions.regions[most.label].model.degree, 1);
         ids.insert(most.label);
     }
     EXPECT_EQ(ids.size(), 3u);
@@ -123,7 +120,7 @@ TEST(Split, LabelsAreWithinRangeAndCountsAgree) {
     std::vector<std::uint64_t> count(regions.regions.size(), 0);
     for (const std::int32_t label : regions.label) {
         ASSERT_LT(label, static_cast<std::int32_t>(count.size()));
-        if (label >= 0) ++count[static_cast<std::size_t>(label)];
+        if (label >= 0) ++count[label];
     }
     for (std::size_t k = 0; k < count.size(); ++k) EXPECT_EQ(count[k], regions.regions[k].surfels);
     EXPECT_EQ(split(s).label, regions.label);

@@ -116,7 +116,7 @@ TEST_P(Contacts, SilhouettesCountEachLineOnce) {
         if (std::abs(x) > 0.4 || std::abs(y) > 0.3 || z < 0 || z > 0.44) return false;
         return z > 0.4 || (std::abs(x) > 0.36 && std::abs(y) > 0.26);
     });
-    const auto area = scene.contacts(*device).silhouette_m2[static_cast<std::size_t>(table)];
+    const auto area = scene.contacts(*device).silhouette_m2[table];
     EXPECT_NEAR(area[0], 0.6 * 0.04 + 2 * 0.04 * 0.4, 1e-9);
     EXPECT_NEAR(area[1], 0.8 * 0.04 + 2 * 0.04 * 0.4, 1e-9);
     EXPECT_NEAR(area[2], 0.8 * 0.6, 1e-9);

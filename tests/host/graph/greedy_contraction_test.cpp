@@ -23,12 +23,11 @@ std::vector<std::int32_t> contracted(std::int32_t nodes, const std::vector<Joint
 // The sum of the log-odds within groups, with that of each node to the ground's.
 double gain(const std::vector<std::int32_t>& label, const std::vector<Joint>& joints,
             const std::vector<bool>& pinned, const std::vector<double>& to_pinned) {
-    const auto of = [&](std::int32_t n) { return label[static_cast<std::size_t>(n)]; };
+    const auto of = [&](std::int32_t n) { return label[n]; };
     const auto held = std::ranges::find(pinned, true);
     double sum = 0;
     for (const Joint& j : joints) {
-        const bool fixed =
-            pinned[static_cast<std::size_t>(j.a)] && pinned[static_cast<std::size_t>(j.b)];
+        const bool fixed = pinned[j.a] && pinned[j.b];
         if (!fixed && of(j.a) == of(j.b)) sum += j.log_odds;
     }
     for (std::size_t n = 0; n < label.size(); ++n) {
@@ -108,15 +107,14 @@ TEST(GreedyContraction, IsNearTheBestOfAllPartitions) {
         const double got = gain(label, joints, pinned, to_pinned);
         EXPECT_GE(got, gain(alone(pinned), joints, pinned, to_pinned) - 1e-9) << seed;
         for (std::int32_t n = 0; n < nodes; ++n) {
-            const std::int32_t l = label[static_cast<std::size_t>(n)];
+            const std::int32_t l = label[n];
             EXPECT_LE(l, n);
-            EXPECT_EQ(label[static_cast<std::size_t>(l)], l) << "the label is the lowest node";
+            EXPECT_EQ(label[l], l) << "the label is the lowest node";
         }
         for (std::int32_t a = 0; a < nodes; ++a) {
             for (std::int32_t b = a + 1; b < nodes; ++b) {
                 std::vector<std::int32_t> merged = label;
-                std::ranges::replace(merged, label[static_cast<std::size_t>(b)],
-                                     label[static_cast<std::size_t>(a)]);
+                std::ranges::replace(merged, label[b], label[a]);
                 EXPECT_LE(gain(merged, joints, pinned, to_pinned), got + 1e-9) << seed;
             }
         }

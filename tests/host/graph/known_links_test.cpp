@@ -68,8 +68,8 @@ TEST(SwendsenWangApart, HoldsInEveryState) {
         pinned[0] = pinned[5] = true;
         std::vector<std::vector<std::int32_t>> apart(count);
         for (const auto& [a, b] : {std::pair{1, 2}, {3, 5}, {2, 7}}) {
-            apart[static_cast<std::size_t>(a)].push_back(b);
-            apart[static_cast<std::size_t>(b)].push_back(a);
+            apart[a].push_back(b);
+            apart[b].push_back(a);
         }
         // All would be one.
         const GroupEnergies energies{[](std::span<const GroupQuery> groups, std::span<double> out) {
@@ -86,7 +86,7 @@ TEST(SwendsenWangApart, HoldsInEveryState) {
             states.insert(chain.labels());
             for (std::size_t n = 0; n < apart.size(); ++n)
                 for (const std::int32_t other : apart[n])
-                    ASSERT_NE(chain.labels()[n], chain.labels()[static_cast<std::size_t>(other)])
+                    ASSERT_NE(chain.labels()[n], chain.labels()[other])
                         << "seed " << seed << ", step " << step;
         }
         EXPECT_GT(states.size(), 5u) << "seed " << seed;

@@ -29,12 +29,11 @@ class RestOf : public test::EachBackend {
         std::vector<bool> ground(static_cast<std::size_t>(scene.count));
         std::vector<std::int32_t> object(static_cast<std::size_t>(scene.count));
         ground[0] = true;
-        for (const std::int32_t w : walls) ground[static_cast<std::size_t>(w)] = true;
-        for (std::int32_t p = 0; p < scene.count; ++p)
-            object[static_cast<std::size_t>(p)] = ground[static_cast<std::size_t>(p)] ? 0 : p;
+        for (const std::int32_t w : walls) ground[w] = true;
+        for (std::int32_t p = 0; p < scene.count; ++p) object[p] = ground[p] ? 0 : p;
         const auto columns = undersides(scene.cells, object, object.size());
-        return infer_rest(candidate_of(contacts, scene.bodies(*device), ground, {of}),
-                          columns[static_cast<std::size_t>(of)], contacts, {}, 0, floors_m);
+        return infer_rest(candidate_of(contacts, scene.bodies(*device), ground, {of}), columns[of],
+                          contacts, {}, 0, floors_m);
     }
     static std::array<double, 4> bounds(const Rest& rest) {
         std::array<double, 4> out{INFINITY, INFINITY, -INFINITY, -INFINITY};

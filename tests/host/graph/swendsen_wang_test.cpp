@@ -90,9 +90,7 @@ void expect_enumerated(std::int32_t nodes, const std::vector<bool>& pinned) {
         const double p = std::exp(-energy / 0.5);
         total += p;
         for (std::size_t e = 0; e < edges.size(); ++e) {
-            if (label[static_cast<std::size_t>(edges[e].a)] ==
-                label[static_cast<std::size_t>(edges[e].b)])
-                joined[e] += p;
+            if (label[edges[e].a] == label[edges[e].b]) joined[e] += p;
         }
     }
     for (std::size_t e = 0; e < edges.size(); ++e) {
@@ -142,7 +140,7 @@ std::map<std::vector<std::int32_t>, int> visits(std::int32_t nodes, int runs) {
             if (label[n] < 0) label[n] = used++;
             for (std::size_t e = 0; e < edges.size(); ++e) {
                 if (static_cast<std::size_t>(edges[e].a) == n && p.joined[e] > 0.5)
-                    label[static_cast<std::size_t>(edges[e].b)] = label[n];
+                    label[edges[e].b] = label[n];
             }
         }
         ++count[label];

@@ -31,10 +31,8 @@ class Mesh : public test::Files {
 int side_of(const PointCloud& cloud, std::size_t n) {
     const std::array<double, 3> p{cloud.x[n], cloud.y[n], cloud.z[n]};
     for (int a = 0; a < 3; ++a) {
-        if (std::abs(p[static_cast<std::size_t>(a)]) < 1e-6) return 2 * a;
-        if (std::abs(p[static_cast<std::size_t>(a)] - test::box_size[static_cast<std::size_t>(a)]) <
-            1e-6)
-            return 2 * a + 1;
+        if (std::abs(p[a]) < 1e-6) return 2 * a;
+        if (std::abs(p[a] - test::box_size[a]) < 1e-6) return 2 * a + 1;
     }
     return -1;
 }
@@ -64,8 +62,7 @@ TEST_F(Mesh, faces_become_points_with_normals_evenly_by_area) {
         }
         EXPECT_LE(at_edges, 5u);
         for (const auto& [side, count] : on) {
-            const double share =
-                2.0 * 1.0 * 0.5 / test::box_size[static_cast<std::size_t>(side / 2)];
+            const double share = 2.0 * 1.0 * 0.5 / test::box_size[side / 2];
             EXPECT_NEAR(static_cast<double>(count), 70000 * share / area, 10) << side;
         }
     }

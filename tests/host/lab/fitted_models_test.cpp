@@ -36,7 +36,7 @@ std::vector<std::int32_t> sure_bodies(const RoomParts& room) {
         if (room.points.primitive[n] < 0) continue;
         const auto p = static_cast<std::size_t>(room.points.primitive[n]);
         ++points[p];
-        if (room.part[n] >= 0) ++votes[p][body[static_cast<std::size_t>(room.part[n])]];
+        if (room.part[n] >= 0) ++votes[p][body[room.part[n]]];
     }
     std::vector<std::int32_t> out(votes.size(), -1);
     for (std::size_t p = 0; p < votes.size(); ++p) {
@@ -65,8 +65,7 @@ TEST(Groupings, TheModelsTellJointsAndTheRoom) {
                     .push_back(room.parts.shell.log_odds[p]);
         }
         for (const graph::Joint& joint : room.parts.joints) {
-            const std::int32_t a = body[static_cast<std::size_t>(joint.a)],
-                               b = body[static_cast<std::size_t>(joint.b)];
+            const std::int32_t a = body[joint.a], b = body[joint.b];
             if (a < 0 || b < 0 || (a == building && b == building)) continue;
             (a == b ? one_odds : two_odds).push_back(joint.log_odds);
         }

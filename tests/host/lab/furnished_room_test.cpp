@@ -25,9 +25,8 @@ INSTANTIATE_TEST_SUITE_P(Furniture, FurnishedRoom, ::testing::Bool(),
                          [](const auto& kind) { return kind.param ? "varied" : "plain"; });
 
 std::string name(const World& world, std::int32_t part) {
-    const Part& p = world.parts[static_cast<std::size_t>(part)];
-    return world.objects[static_cast<std::size_t>(p.object)].name + "/" + p.name + " #" +
-           std::to_string(part);
+    const Part& p = world.parts[part];
+    return world.objects[p.object].name + "/" + p.name + " #" + std::to_string(part);
 }
 
 TEST_P(FurnishedRoom, SolidsNeverOverlap) {
@@ -52,8 +51,7 @@ TEST_P(FurnishedRoom, FixedPartsTouch) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const World world = room(seed);
         for (const auto& [a, b] : world.fixed) {
-            const double g = gap(world.parts[static_cast<std::size_t>(a)],
-                                 world.parts[static_cast<std::size_t>(b)]);
+            const double g = gap(world.parts[a], world.parts[b]);
             EXPECT_LT(std::abs(g), 1e-3)
                 << "seed " << seed << ": " << name(world, a) << " and " << name(world, b);
         }
@@ -66,8 +64,8 @@ TEST_P(FurnishedRoom, SupportHolds) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const World world = room(seed);
         for (const auto& [supporter, supported] : world.support) {
-            const Part& below = world.parts[static_cast<std::size_t>(supporter)];
-            const Part& above = world.parts[static_cast<std::size_t>(supported)];
+            const Part& below = world.parts[supporter];
+            const Part& above = world.parts[supported];
             const std::string pair = name(world, supporter) + " under " + name(world, supported);
             EXPECT_NEAR(above.bottom(), below.top(), 1e-9) << "seed " << seed << ": " << pair;
             EXPECT_NEAR(below.distance({above.center[0], above.center[1], above.bottom()}), 0, 1e-9)
@@ -96,8 +94,8 @@ TEST_P(FurnishedRoom, EverythingStands) {
         const World world = room(seed);
         std::vector<std::vector<Vec3>> feet(world.objects.size());
         for (const auto& pair : world.support) {
-            const Part& foot = world.parts[static_cast<std::size_t>(pair.second)];
-            auto& all = feet[static_cast<std::size_t>(foot.object)];
+            const Part& foot = world.parts[pair.second];
+            auto& all = feet[foot.object];
             const auto points = footprint(foot);
             all.insert(all.end(), points.begin(), points.end());
         }
@@ -129,11 +127,9 @@ TEST_P(FurnishedRoom, NothingFloats) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const World world = room(seed);
         std::set<std::int32_t> held{0};
-        for (const auto& pair : world.support)
-            held.insert(world.parts[static_cast<std::size_t>(pair.second)].object);
+        for (const auto& pair : world.support) held.insert(world.parts[pair.second].object);
         for (const auto& [a, b] : world.fixed) {
-            const auto p = world.parts[static_cast<std::size_t>(a)].object,
-                       q = world.parts[static_cast<std::size_t>(b)].object;
+            const auto p = world.parts[a].object, q = world.parts[b].object;
             if (p == 0) held.insert(q);
             if (q == 0) held.insert(p);
         }
@@ -213,7 +209,7 @@ TEST(VariedRoom, LeaningThingsTouchAWall) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const World world = furnished_room({.seed = seed, .varied = true});
         for (const Part& part : world.parts) {
-            const std::string& object = world.objects[static_cast<std::size_t>(part.object)].name;
+            const std::string& object = world.objects[part.object].name;
             if (object.find("leaning") == std::string::npos) continue;
             ++leaning;
             double nearest = 1;

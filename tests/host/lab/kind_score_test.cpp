@@ -12,9 +12,7 @@ namespace {
 Scene perfect(const scenes::World& world, const scenes::Scan& scan) {
     Scene scene;
     const auto fixed = scenes::fixed_objects(world);
-    const auto body = [&](std::int32_t object) {
-        return fixed[static_cast<std::size_t>(object)] ? 0 : object;
-    };
+    const auto body = [&](std::int32_t object) { return fixed[object] ? 0 : object; };
     for (const auto& p : scan.truth) {
         scene.points.x.push_back(static_cast<float>(p.at[0]));
         scene.points.y.push_back(static_cast<float>(p.at[1]));

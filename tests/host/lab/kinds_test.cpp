@@ -80,7 +80,7 @@ std::vector<Mass> loads(const World& world) {
         out[n] = mass_of(world, static_cast<std::int32_t>(n));
     for (std::size_t n = out.size(); n-- > 1;) {  // carriers come before what they carry
         for (const std::int32_t s : below[n]) {
-            Mass& m = out[static_cast<std::size_t>(s)];
+            Mass& m = out[s];
             const double share = out[n].of / static_cast<double>(below[n].size());
             for (std::size_t a = 0; a < 3 && below[n].size() == 1; ++a)
                 m.at[a] = (m.of * m.at[a] + share * out[n].at[a]) / (m.of + share);
@@ -107,9 +107,8 @@ TEST_P(EachKind, solids_of_different_things_do_not_overlap) {
                 const Part &p = world.parts[a], &q = world.parts[b];
                 if (p.object == q.object || apart(boxes[a], boxes[b], 0.001)) continue;
                 EXPECT_GT(gap(p, q, 2e-4), -0.001)
-                    << seed << ": " << p.name << " of "
-                    << world.objects[static_cast<std::size_t>(p.object)].name << " in " << q.name
-                    << " of " << world.objects[static_cast<std::size_t>(q.object)].name;
+                    << seed << ": " << p.name << " of " << world.objects[p.object].name << " in "
+                    << q.name << " of " << world.objects[q.object].name;
             }
         }
     }
@@ -128,11 +127,11 @@ TEST_P(EachKind, what_stands_has_its_middle_over_what_carries_it) {
             bool leans = world.objects[n].where == "wall";
             std::size_t supports = 0;
             for (const auto& [below, foot] : world.support) {
-                const Part& part = world.parts[static_cast<std::size_t>(foot)];
+                const Part& part = world.parts[foot];
                 if (part.object != object) continue;
                 ++supports;
                 leans = leans || (part.shape == Shape::box && part.lean != 0);
-                add_contacts(part, world.parts[static_cast<std::size_t>(below)], contacts);
+                add_contacts(part, world.parts[below], contacts);
             }
             EXPECT_GT(supports, 0u) << seed << ": " << world.objects[n].name;
             if (leans) continue;

@@ -77,7 +77,7 @@ TEST(Measures, PointsLieOnWhatIsInView) {
         const Vec3 p{cloud.x[n], cloud.y[n], cloud.z[n]};
         const auto [off, part] = world.distance(p);
         ASSERT_NEAR(off, 0, 1e-6);
-        const scenes::Part& on = world.parts[static_cast<std::size_t>(part)];
+        const scenes::Part& on = world.parts[part];
         if (on.object != scenes::measured_object) continue;
         ++on_tin;
         EXPECT_GT(p[2], on.bottom() + 1e-4);  // it stands on its underside

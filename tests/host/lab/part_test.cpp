@@ -221,7 +221,7 @@ TEST(Random, IsTheSameEverywhere) {
     EXPECT_NE(Random(1).next(), Random(2).next());
     EXPECT_NE(Random(1, 0).next(), Random(1, 1).next());
     std::array<int, 6> seen{};
-    for (int k = 0; k < 6000; ++k) seen[static_cast<std::size_t>(random.integer(2, 7) - 2)]++;
+    for (int k = 0; k < 6000; ++k) seen[random.integer(2, 7) - 2]++;
     for (const int count : seen) EXPECT_NEAR(count, 1000, 150);  // five standard deviations
 }
 

@@ -55,7 +55,7 @@ topple::Scene perfect(const World& world) {
     s.voxel_size_m = 0.02;
     s.up = world.to_input({0, 0, 1});
     const auto body = [&](std::int32_t part) {
-        const std::int32_t o = world.parts[static_cast<std::size_t>(part)].object;
+        const std::int32_t o = world.parts[part].object;
         return o == 4 ? 0 : o;  // the cabinet hangs on the wall
     };
     Random random(3);
@@ -65,7 +65,7 @@ topple::Scene perfect(const World& world) {
         list.z.push_back(static_cast<float>(p[2]));
     };
     for (std::int32_t part = 0; part < static_cast<std::int32_t>(world.parts.size()); ++part) {
-        const Part& p = world.parts[static_cast<std::size_t>(part)];
+        const Part& p = world.parts[part];
         const auto box = p.bounds();
         for (int n = 0; n < 3000; ++n) {
             Vec3 q{};

@@ -54,12 +54,9 @@ TEST_P(Bodies, MassesMatchPlainSums) {
                 sum[1] += cells.j[n] + 0.5L;
                 sum[2] += cells.k[n] + 0.5L;
             }
-            const MassProperties& b = bodies[static_cast<std::size_t>(label)];
+            const MassProperties& b = bodies[label];
             EXPECT_EQ(b.voxels, count);
-            EXPECT_NEAR(
-                b.mass_kg,
-                static_cast<double>(count) * 8e-6 * density[static_cast<std::size_t>(label)],
-                1e-12);
+            EXPECT_NEAR(b.mass_kg, static_cast<double>(count) * 8e-6 * density[label], 1e-12);
             for (std::size_t a = 0; a < 3 && count; ++a) {
                 EXPECT_NEAR(b.center[a], static_cast<double>(sum[a] / count * 0.02L), 1e-9);
             }
@@ -81,8 +78,7 @@ TEST_P(Bodies, EveryBackendRatesAlike) {
                 Candidate c;
                 c.primitives = p == q ? std::vector{p} : std::vector{p, q};
                 std::vector<MassProperties> parts;
-                for (const std::int32_t r : c.primitives)
-                    parts.push_back(bodies[static_cast<std::size_t>(r)]);
+                for (const std::int32_t r : c.primitives) parts.push_back(bodies[r]);
                 c.body = combine(parts);
                 if ((p + q) % 3)
                     c.support_polygon = {{0.02, 0.02}, {0.2, 0.02}, {0.2, 0.2}, {0.02, 0.2}};
@@ -199,8 +195,7 @@ TEST(VoxelHulls, SupportEveryCorner) {
                                                   cells.k[n] + (c >> 2)));
                     }
                 }
-                for (const auto& c : hulls[static_cast<std::size_t>(label)])
-                    hull = std::min(hull, along(c[0], c[1], c[2]));
+                for (const auto& c : hulls[label]) hull = std::min(hull, along(c[0], c[1], c[2]));
                 ASSERT_NEAR(all, hull, 1e-9) << "seed " << seed << " label " << label;
             }
         }

@@ -116,7 +116,7 @@ TEST(HullLandscape, BordersOfABox) {
     const Hull hull = test::box_hull(0.3, 0.2, 0.5);
     const HullLandscape box =
         hull_landscape(hull.points, {0, 0, 0}, {.up = {1, 0, 0}, .borders = true});
-    EXPECT_GT(box.poses[static_cast<std::size_t>(box.now)].up[0], 0.999);
+    EXPECT_GT(box.poses[box.now].up[0], 0.999);
     expect_close(box.now_m, 0.15);
     EXPECT_EQ(box.corners.size(), 8U);
     const auto height = [&](const Vec3& up) {

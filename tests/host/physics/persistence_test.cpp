@@ -115,13 +115,11 @@ Complex complex_of(const test::Hull& hull) {
     }
     for (const auto& [ends, f] : left) {
         const int g = left.at({ends.second, ends.first});
-        const Vec3 &from = normal[static_cast<std::size_t>(f)],
-                   &to = normal[static_cast<std::size_t>(g)], axis = cross(from, to);
+        const Vec3 &from = normal[f], &to = normal[g], axis = cross(from, to);
         const Vec3 a = minus(hull.points[ends.first], hull.center),
                    edge = minus(hull.points[ends.second], hull.points[ends.first]);
         const Vec3 foot = along(a, -dot(a, edge) / dot(edge, edge), edge);
-        double top =
-            std::max(height[static_cast<std::size_t>(f)], height[static_cast<std::size_t>(g)]);
+        double top = std::max(height[f], height[g]);
         if (dot(cross(from, foot), axis) > 0 && dot(cross(foot, to), axis) > 0)
             top = std::sqrt(dot(foot, foot));
         complex.insert_simplex({f, g}, top);

@@ -165,7 +165,7 @@ TEST_F(Sliding, PlacesAroundAreWorkOrFalls) {
     const auto at = [&](double x, double y) {
         const auto column = half + static_cast<std::int32_t>(std::lround(x / voxel));
         const auto row = half + static_cast<std::int32_t>(std::lround(y / voxel));
-        return places.energy_J[static_cast<std::size_t>(row * places.side + column)];
+        return places.energy_J[row * places.side + column];
     };
     EXPECT_EQ(at(0, 0), 0);
     // Places are columns, and the centre stands on the border of two.

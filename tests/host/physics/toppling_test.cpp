@@ -190,7 +190,7 @@ TEST(Toppling, ATableOfAThousandIsQuick) {
     const auto start = std::chrono::steady_clock::now();
     double sum = 0;
     for (int n = 0; n < 1000; ++n) {
-        const Toppling toppling = bricks[static_cast<std::size_t>(n % 20)].toppling();
+        const Toppling toppling = bricks[n % 20].toppling();
         for (const auto& [x, y] : sixteen()) {
             for (std::size_t h = 0; h < Toppling::heights; ++h)
                 sum += std::min(toppling.blow_barrier_J({x, y, 0}, toppling.height_m(h)), 1e9);

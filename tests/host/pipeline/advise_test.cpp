@@ -38,12 +38,11 @@ class Advice : public ::testing::Test {
     }
     double worst(std::int32_t id) const {
         double most = 0;
-        for (const auto& field : risk)
-            most = std::max(most, field[static_cast<std::size_t>(id)].mean_J);
+        for (const auto& field : risk) most = std::max(most, field[id].mean_J);
         return most;
     }
     static const Suggestion& at(const std::vector<Suggestion>& all, std::int32_t id) {
-        return all[static_cast<std::size_t>(id)];
+        return all[id];
     }
 
     std::unique_ptr<device::Device> device = device::open_native(2);

@@ -31,26 +31,23 @@ struct AssessedRoom {
         const physics::SupportTable table(device, cells, primitives, physics::geodesic_sphere(16));
         std::vector<double> density(room.objects.size(), 0.0);  // by object
         for (std::size_t p = room.object_of_primitive.size(); p-- > 0;)
-            density[static_cast<std::size_t>(room.object_of_primitive[p])] = room.density_kg_m3[p];
+            density[room.object_of_primitive[p]] = room.density_kg_m3[p];
         const auto inertia =
             physics::inertia_of_objects(physics::second_moments(cells, primitives, {}), bodies,
                                         room.object_of_primitive, density);
         for (std::size_t o = 0; o < room.objects.size(); ++o) {
             std::vector<std::int32_t> members;
             for (std::int32_t p = 0; p < primitives; ++p) {
-                if (room.object_of_primitive[static_cast<std::size_t>(p)] ==
-                    static_cast<std::int32_t>(o))
+                if (room.object_of_primitive[p] == static_cast<std::int32_t>(o))
                     members.push_back(p);
             }
             Body object;
             object.grounded = room.objects[o].grounded;
-            object.lowest_m = contacts.lowest_m[static_cast<std::size_t>(members.front())];
-            object.highest_m = contacts.highest_m[static_cast<std::size_t>(members.front())];
+            object.lowest_m = contacts.lowest_m[members.front()];
+            object.highest_m = contacts.highest_m[members.front()];
             for (const std::int32_t p : members) {
-                object.lowest_m =
-                    std::min(object.lowest_m, contacts.lowest_m[static_cast<std::size_t>(p)]);
-                object.highest_m =
-                    std::max(object.highest_m, contacts.highest_m[static_cast<std::size_t>(p)]);
+                object.lowest_m = std::min(object.lowest_m, contacts.lowest_m[p]);
+                object.highest_m = std::max(object.highest_m, contacts.highest_m[p]);
             }
             object.candidate =
                 graph::candidate_of(contacts, bodies, around.is_floor_primitive, members);

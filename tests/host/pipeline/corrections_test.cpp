@@ -107,8 +107,7 @@ TEST_F(CorrectedRoom, IsAsSomebodyKnowsItWhateverTheSeedAndTheVoxels) {
         EXPECT_NEAR(chest.mass_kg, 12.5, 1e-9);
         EXPECT_EQ(chest.mass_error_kg, 0);
         double of_parts = 0;
-        for (const std::int32_t p : chest.primitives)
-            of_parts += scene.primitives[static_cast<std::size_t>(p)].mass_kg;
+        for (const std::int32_t p : chest.primitives) of_parts += scene.primitives[p].mass_kg;
         EXPECT_NEAR(of_parts, 12.5, 1e-9);
         EXPECT_GT(chest.barrier_J, 0);
     }
@@ -158,7 +157,7 @@ TEST_F(CorrectedRoom, HasNoRiskOfWhatIsFixed) {
     const Scene named = parsed({correction(Kind::fixed, {on_crate}), name, mass}).scene;
     EXPECT_EQ(named.objects[0].name, "");
     const std::int32_t part = named.points.primitive[nearest_point(named, cloud(), on_crate)];
-    EXPECT_EQ(named.primitives[static_cast<std::size_t>(part)].name, "shelf");
+    EXPECT_EQ(named.primitives[part].name, "shelf");
     EXPECT_FALSE(named.corrections[2].held);
     EXPECT_THAT(named.corrections[2].outcome, HasSubstr("building"));
 }
@@ -314,9 +313,7 @@ TEST(CorrectedScan, IsCutWhereTwoThingsWereOne) {
         break;
     }
     ASSERT_GE(parts.size(), 2u);
-    const auto points = [&](std::int32_t p) {
-        return plain.primitives[static_cast<std::size_t>(p)].points;
-    };
+    const auto points = [&](std::int32_t p) { return plain.primitives[p].points; };
     std::ranges::sort(parts, [&](auto a, auto b) { return points(a) > points(b); });
     const auto middle_of = [&](std::int32_t p) {  // the point nearest to the middle of the part
         Vec3 mean{};

@@ -63,7 +63,7 @@ void expect_understood(const SmallRoom& room, const Scene& scene) {
         // The lid or the rim of a thing may go to what it touches, or stand for itself.
         const bool thing = part == SmallRoom::crate || part == SmallRoom::box;
         EXPECT_GE(object.share, thing ? 0.75 : 0.9);
-        const Object& o = scene.objects[static_cast<std::size_t>(object.label)];
+        const Object& o = scene.objects[object.label];
         EXPECT_EQ(o.grounded, !thing);
         EXPECT_TRUE(std::isfinite(o.barrier_J) && std::isfinite(o.mass_kg));
     }

@@ -19,12 +19,12 @@ std::int32_t leg_of(double gap, bool held, double width = 0.1, bool between = fa
     const auto top = room.box(-0.6, 0.6, -0.6, 0.6, 0.9, 0.95, false);
     if (between) room.box(-0.1, 0.2, -0.1, 0.2, 0.85, 0.875, false);
     AssessedRoom scene(*device, room, 0.3);
-    auto& rest = scene.objects[static_cast<std::size_t>(top)].rest;
+    auto& rest = scene.objects[top].rest;
     rest = held ? graph::RestKind::seen : graph::RestKind::hidden;
     const auto legs = find_legs(scene.solids, room.object_of_primitive, scene.objects);
     EXPECT_EQ(legs.size(), scene.objects.size());
-    EXPECT_EQ(legs[static_cast<std::size_t>(top)], -1);
-    const std::int32_t found = legs[static_cast<std::size_t>(post)];
+    EXPECT_EQ(legs[top], -1);
+    const std::int32_t found = legs[post];
     return found == top ? 1 : found;
 }
 

@@ -69,7 +69,7 @@ TEST(ObjectAt, OfAParsedRoom) {
     ASSERT_GE(floor, 0);
     ASSERT_GE(crate, 0);
     ASSERT_GE(box, 0);
-    EXPECT_TRUE(result.scene.objects[static_cast<std::size_t>(floor)].grounded);
+    EXPECT_TRUE(result.scene.objects[floor].grounded);
     EXPECT_NE(crate, floor);
     EXPECT_NE(box, crate);
     EXPECT_EQ(object_at(result, {1.3, 1.2, 1.2}, 0.05), -1) << "in the air";

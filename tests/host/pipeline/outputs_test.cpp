@@ -340,7 +340,7 @@ TEST_F(Outputs, of_depth_frames_obey_their_description) {
     check_labels(points, scene);
     std::vector<std::size_t> count(scene.at("primitives").size());
     for (const double p : points.at("primitive")) {
-        if (p >= 0) ++count[static_cast<std::size_t>(p)];
+        if (p >= 0) ++count[p];
     }
     for (std::size_t p = 0; p < count.size(); ++p)
         EXPECT_EQ(scene.at("primitives")[p].at("points"), count[p]) << "primitive " << p;
@@ -351,8 +351,7 @@ TEST_F(Outputs, of_depth_frames_obey_their_description) {
     for (std::size_t n = 0; n < solid.at("x").size(); ++n) {
         ASSERT_TRUE(solid.at("state")[n] == 0 || solid.at("state")[n] == 1) << n;
         // Fragments too small to be solids belong to no primitive.
-        if (solid.at("primitive")[n] >= 0)
-            ++count[static_cast<std::size_t>(solid.at("primitive")[n])];
+        if (solid.at("primitive")[n] >= 0) ++count[solid.at("primitive")[n]];
     }
     for (std::size_t p = 0; p < count.size(); ++p)
         EXPECT_EQ(scene.at("primitives")[p].at("solid_voxels"), count[p]) << "primitive " << p;

@@ -49,7 +49,7 @@ class SlowRisk : public ::testing::Test {
             options.record = record;
             return safety::earthquake_field(*device, scene.around, scene.at_risk, mu, options);
         }();
-        return safety::risk(disturbance, scene.at_risk)[static_cast<std::size_t>(id)];
+        return safety::risk(disturbance, scene.at_risk)[id];
     }
 
     enum class Of { both, risk, chance };

@@ -143,7 +143,7 @@ class SyntheticScene {
         primitive.object = object;
         primitive.model = model;
         scene_.primitives.push_back(primitive);
-        scene_.objects[static_cast<std::size_t>(object)].primitives.push_back(primitive.id);
+        scene_.objects[object].primitives.push_back(primitive.id);
         return primitive.id;
     }
 
@@ -152,8 +152,8 @@ class SyntheticScene {
     // Voxels of a box on the grid, and points on its face that looks along `normal`.
     void box(int id, double x0, double y0, double z0, double x1, double y1, double z1,
              const Vec3& normal) {
-        auto& primitive = scene_.primitives[static_cast<std::size_t>(id)];
-        auto& object = scene_.objects[static_cast<std::size_t>(primitive.object)];
+        auto& primitive = scene_.primitives[id];
+        auto& object = scene_.objects[primitive.object];
         const auto cells = [&](double low, double high) {
             return std::pair(std::lround(low / h_),
                              std::max(std::lround(high / h_), std::lround(low / h_) + 1));

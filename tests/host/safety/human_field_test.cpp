@@ -26,7 +26,7 @@ class HumanField : public test::EachBackend {
 };
 
 double struck(const Disturbance& field, std::int32_t object) {
-    return test::total_probability(field.work[static_cast<std::size_t>(object)]);
+    return test::total_probability(field.work[object]);
 }
 
 // The five cases of the paper's Fig. 11, in two rooms joined by a door.
@@ -62,8 +62,8 @@ TEST_P(HumanField, FiveTypicalPlaces) {
     EXPECT_GT(f.samples.x.size(), 1000u);
     EXPECT_LE(f.samples.x.size(), max_samples);
     const auto r = risk(f, room.objects);
-    EXPECT_EQ(r[static_cast<std::size_t>(middle)].mean_J, 0);
-    EXPECT_GT(r[static_cast<std::size_t>(edge)].mean_J, 0);
+    EXPECT_EQ(r[middle].mean_J, 0);
+    EXPECT_GT(r[edge].mean_J, 0);
 }
 
 TEST_P(HumanField, NoArmReachesThroughAWall) {
@@ -95,7 +95,7 @@ TEST_P(HumanField, ElsewhereIsAsIfItStoodThere) {
         for (const double to : inside) {
             placements.push_back({static_cast<std::size_t>(cup),
                                   static_cast<std::int32_t>(std::lround((to - at) / 0.025)), 0,
-                                  room.objects[static_cast<std::size_t>(cup)]});
+                                  room.objects[cup]});
         }
         // Each of its cups falls at any strike, and releases as much.
         for (const Risk& risk : walkers.risk_at(placements)) moved.push_back(risk.chance);
@@ -152,7 +152,7 @@ TEST_P(HumanField, MatchesTheOracle) {
                       std::vector<std::uint32_t>(map.size())};
     const double band_m = options.body_height_m / 32;
     for (std::size_t v = 0; v < cells.size(); ++v) {
-        if (s.is_floor_primitive[static_cast<std::size_t>(cells.primitive[v])]) continue;
+        if (s.is_floor_primitive[cells.primitive[v]]) continue;
         for (unsigned b = 0; b < 32; ++b) {
             const double middle = (b + 0.5) * band_m;
             if (cells.k[v] * cells.voxel_m <= middle && middle < (cells.k[v] + 1) * cells.voxel_m) {
@@ -200,7 +200,7 @@ TEST_P(HumanField, MatchesTheOracle) {
     double worst = 0;
     std::size_t compared = 0, zeros = 0;
     for (std::size_t v = 0; v < cells.size(); ++v) {
-        if (room.objects[static_cast<std::size_t>(s.object[v])].grounded) {
+        if (room.objects[s.object[v]].grounded) {
             EXPECT_EQ(f.exposure[v], 0);
         } else if (exposure[v] == 0) {
             ++zeros;

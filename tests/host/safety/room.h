@@ -45,8 +45,7 @@ class Room {
         object_of_primitive.push_back(object);
         density_kg_m3.push_back(density);
         floor_.push_back(false);
-        objects[static_cast<std::size_t>(object)].mass_kg +=
-            density * (x1 - x0) * (y1 - y0) * (z1 - z0);
+        objects[object].mass_kg += density * (x1 - x0) * (y1 - y0) * (z1 - z0);
     }
     std::int32_t thing(double x, double y, double z, double size = 0.08, double height = 0.12) {
         return box(x - size / 2, x + size / 2, y - size / 2, y + size / 2, z, z + height, false);
@@ -77,7 +76,7 @@ class Room {
             cells_.k.push_back(std::get<2>(place));
             cells_.primitive.push_back(primitive);
             cells_.basis.push_back(Basis::surface);
-            out.object.push_back(object_of_primitive[static_cast<std::size_t>(primitive)]);
+            out.object.push_back(object_of_primitive[primitive]);
         }
         out.cells = &cells_;
         out.is_floor_primitive = floor_;

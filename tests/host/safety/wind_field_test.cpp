@@ -26,13 +26,12 @@ class WindField : public ::testing::Test {
         const auto surroundings = room.surroundings();
         const auto cells = cells_of_objects(movable_object_of_cells(surroundings, room.objects),
                                             room.objects.size());
-        const auto& own = cells[static_cast<std::size_t>(id)];
+        const auto& own = cells[id];
         const Columns columns(*surroundings.cells);
         const Frontage front = wind_frontage(*surroundings.cells, columns, own, direction(d), 1.0);
-        const MassSpread stands =
-            stance(surroundings, own, room.objects[static_cast<std::size_t>(id)]);
-        return {front.area_m2, front.center_m - stands.bottom_m,
-                room.objects[static_cast<std::size_t>(id)].base_width_m / 2, stands.height()};
+        const MassSpread stands = stance(surroundings, own, room.objects[id]);
+        return {front.area_m2, front.center_m - stands.bottom_m, room.objects[id].base_width_m / 2,
+                stands.height()};
     }
 };
 
@@ -144,8 +143,8 @@ TEST_F(WindField, ShelteredFromWhereAWallStands) {
     EXPECT_EQ(load(room, cup, 0).area_m2, 0) << "in the lee";
     EXPECT_NEAR(load(room, cup, 8).area_m2, open, 1e-9) << "from the other side";
     const auto field = wind_field(*device, room.surroundings(), room.objects, {});
-    EXPECT_LT(test::total_probability(field.work[static_cast<std::size_t>(cup)]), 0.99);
-    EXPECT_GT(test::total_probability(field.work[static_cast<std::size_t>(cup)]), 0.4);
+    EXPECT_LT(test::total_probability(field.work[cup]), 0.99);
+    EXPECT_GT(test::total_probability(field.work[cup]), 0.4);
     EXPECT_FALSE(field.samples.x.empty());
     test::Room far(0.02);
     const auto same = far.thing(0.5, 0.5, 0, 0.1, 0.2);

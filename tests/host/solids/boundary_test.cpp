@@ -53,8 +53,7 @@ TEST(Boundary, AnAskewBoxHasItsVolumeCentreAndHullAtAnyVoxelSize) {
             const Bounded b = bounded({box}, voxel);
             EXPECT_NEAR(b.bodies[0].volume_m3 / box.volume(), 1, 0.004 * voxel / 0.02);
             for (int a = 0; a < 3; ++a)
-                EXPECT_NEAR(b.bodies[0].center[static_cast<std::size_t>(a)], box.middle[a],
-                            0.02 * voxel);
+                EXPECT_NEAR(b.bodies[0].center[a], box.middle[a], 0.02 * voxel);
             ThreadPool threads(2);
             const auto points =
                 physics::solid_hulls(b.scanned.cells, b.boundary, {true}, threads)[0];
@@ -195,7 +194,7 @@ TEST(Boundary, AConcaveEdgeIsNoWiderThanItsFaces) {
         one.primitive.push_back(0);
         // Faces that are flush are one.
         constexpr std::array<std::int32_t, 12> of_one{0, 1, 2, 3, 4, 5, 0, 7, 2, 3, 10, 11};
-        one.patch.push_back(of_one[static_cast<std::size_t>(both.patch[n])]);
+        one.patch.push_back(of_one[both.patch[n]]);
     }
     const auto device = device::open_native();
     const BoundaryCells b =

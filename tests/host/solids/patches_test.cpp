@@ -180,8 +180,8 @@ TEST(NarrowFaces, HaveTheirPrimitiveBehindThem) {
     std::vector<std::int32_t> on;
     std::vector<SurfacePatch> patches(2);
     for (int side = 0; side < 2; ++side) {
-        patches[static_cast<std::size_t>(side)].c = {side * -0.01, 0, 0, side ? 1.0 : -1.0};
-        patches[static_cast<std::size_t>(side)].noise_m = 1e-4;
+        patches[side].c = {side * -0.01, 0, 0, side ? 1.0 : -1.0};
+        patches[side].noise_m = 1e-4;
     }
     for (int n = 0; n < 3000; ++n) {
         s.add({between(random, 0, 0.2), between(random, 0, 0.2), n % 2 * 0.01});
