@@ -7,7 +7,7 @@ import topple
 
 
 @contextlib.contextmanager
-def wrong(kind, words=None):
+def raises(kind, words=None):
     """What is done within raises a topple.Error of this kind, whose message has the words, a regular expression."""
     with pytest.raises(topple.Error, match=words) as raised:
         yield

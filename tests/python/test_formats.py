@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import topple
-from others import wrong
+from others import raises
 import topple.formats
 from made_scans import CAMERA, POSES, colours_of, graphics, parsed, quaternion, refused, same_objects, seen_from, truncated
 from topple.formats import cloud, frames
@@ -324,7 +324,7 @@ def test_what_crashes_crashes_apart(points, device, tmp_path, monkeypatch):
 
 def test_a_conversion_is_cancelled(points, device, tmp_path):
     model = colmap_model(tmp_path / 'model', POSES[:1], ['a.jpg'], True, points)
-    with wrong('cancelled'):
+    with raises('cancelled'):
         parsed(model, device, cancelled=lambda: True)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import topple
-from others import Exported, wrong
+from others import Exported, raises
 from made_scans import CAMERA, POSES, colours_of, seen_from
 
 
@@ -82,10 +82,10 @@ def test_the_unit_of_a_record_may_be_given(points, device, tmp_path):
         parsed = topple.parse(points[::6], device=device, disturbances='earthquake', accelerogram=tmp_path / 'quake.txt', **options)
         return next(note for note in parsed.notes if 'accelerogram' in note)
     assert '1 m/s^2' in by(accelerogram_unit='cm/s2')
-    with wrong('input', 'quake.txt.*name it with accelerogram_unit: g, m/s2 or cm/s2'):
+    with raises('input', 'quake.txt.*name it with accelerogram_unit: g, m/s2 or cm/s2'):
         by()
     for unit, options in (('ft', {'accelerogram': tmp_path / 'quake.txt'}), ('g', {})):
-        with wrong('usage', '^accelerogram_unit'):
+        with raises('usage', '^accelerogram_unit'):
             topple.parse(points, device=device, accelerogram_unit=unit, **options)
 
 
@@ -123,7 +123,7 @@ def test_what_a_recording_does_not_say_may_be_given(points, device, tmp_path):
 
 @pytest.mark.parametrize('wrong', [(), ('a', 'b', 'c', 'd'), (None, 'b')])
 def test_a_record_has_one_to_three_components(points, device, wrong):
-    with wrong('usage', 'along, across and up'):
+    with raises('usage', 'along, across and up'):
         topple.parse(points, device=device, accelerogram=wrong)
 
 
@@ -280,7 +280,7 @@ def test_errors_of_options_and_devices(points):
         with pytest.raises(topple.Error, match=words) as raised:
             topple.parse(points, **{option: value})
         assert raised.value.kind == ('usage' if words[0] == '^' else 'input')
-    with wrong('usage', '^backend abacus is unknown'):
+    with raises('usage', '^backend abacus is unknown'):
         topple.parse(points, device='abacus')
     assert 'native' in {d.backend for d in topple.devices() if d.usable}
     assert repr(topple.open_device('native')).startswith('<topple.Device native')
@@ -323,12 +323,12 @@ def test_viewpoints_that_are_not_finite_are_told(points, device):
 def test_points_in_centimetres_are_told(device):
     patch = np.random.default_rng(3).random((2000, 3), np.float32) * np.float32([4, 4, 0.001])
     corners = np.concatenate([patch + np.float32(at) for at in ((0, 0, 0), (120, 0, 0), (0, 120, 0), (0, 0, 120))])
-    with wrong('input', r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*or use voxel_m='):
+    with raises('input', r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*or use voxel_m='):
         quick(corners, device, voxel_m=0.02)
 
 
 def test_a_viewpoint_in_millimetres_is_refused(points, device):
-    with wrong('input', r'^points: its viewpoint lies 1499 m off the points, which extend over 2.8 m: .* in mm, multiply it by 0.001'):
+    with raises('input', r'^points: its viewpoint lies 1499 m off the points, which extend over 2.8 m: .* in mm, multiply it by 0.001'):
         quick(points, device, viewpoint=(0, 0, 1500))
     assert len(quick(points, device, viewpoint=(1.4, 0.4, 1.0)).objects) > 2
 
@@ -397,7 +397,7 @@ def test_options_of_numpy_are_taken(points, result, device):
 
 
 def test_a_cache_is_of_files_and_a_name_of_arrays(points, device, tmp_path):
-    with wrong('usage', '^cache_file /nope/x: .*in memory'):
+    with raises('usage', '^cache_file /nope/x: .*in memory'):
         quick(points, device, cache_file='/nope/x')
     with pytest.raises(topple.Error, match='name are for points in memory'):
         quick(tmp_path, device, name='desk')
@@ -420,7 +420,7 @@ def test_progress_and_cancelling(points, device):
     assert names[0] == 'ingest' and 'grouping' in names and names[-1] == 'assembly'
     shares = [done for stage, done in stages]
     assert shares == sorted(shares) and 0 <= shares[0] < 0.1 and shares[-1] == 1 and len(set(shares)) > 10
-    with wrong('cancelled', '^cancelled$'):
+    with raises('cancelled', '^cancelled$'):
         quick(points, device, cancelled=lambda: True)
 
     def fails(stage, done):
@@ -591,7 +591,7 @@ def test_exports_have_the_colours_of_points_in_memory(points, device, ply, tmp_p
 
 def test_exports_into_what_looks_like_a_file_are_refused(result, tmp_path):
     for name, file, top in (('mjcf', 'a.xml', 'scene.xml'), ('urdf', 'b.URDF', 'scene.urdf'), ('sdf', 'c.sdf', 'scene.sdf')):
-        with wrong('usage', rf'^{name}: .*{file} looks like a file; it is a folder, into which {top} is written'):
+        with raises('usage', rf'^{name}: .*{file} looks like a file; it is a folder, into which {top} is written'):
             result.export(**{name: tmp_path / file})
     assert not list(tmp_path.iterdir())
     (tmp_path / 'd.sdf').mkdir()
@@ -599,7 +599,7 @@ def test_exports_into_what_looks_like_a_file_are_refused(result, tmp_path):
 
 
 def test_exports_to_nothing_or_over_others_files_are_refused(result, tmp_path):
-    with wrong('usage', 'mjcf'):
+    with raises('usage', 'mjcf'):
         result.export()
     for wrong in ({'threads': -1}, {'visuals': 'no'}, {'mjcf': 3}):
         with pytest.raises(topple.Error, match=f'^{[*wrong][0]}: expected'):

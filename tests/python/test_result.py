@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import topple
-from others import wrong
+from others import raises
 
 
 def test_columns_have_what_the_objects_have(result):
@@ -47,7 +47,7 @@ def test_columns_of_a_scene_without_contacts_have_their_shapes(device):
     square = np.random.default_rng(4).random((4000, 3), np.float32) * np.array([2, 2, 0.002], np.float32)
     table = topple.parse(square, device=device, disturbances=[]).columns('supports')
     assert table['supporter'].shape == (0,) and table['supporter'].dtype == np.int32
-    with wrong('usage', 'what: expected objects, primitives, contacts, supports, pushes, blows, not 3'):
+    with raises('usage', 'what: expected objects, primitives, contacts, supports, pushes, blows, not 3'):
         topple.parse(square, device=device, disturbances=[]).columns(3)
 
 
@@ -272,7 +272,7 @@ def test_what_can_be_taken_away_first(result):
     torn = of(5, (1, 2, 1), (2, 3, 0.7), (3, 2, 0.7), (0, 1, 1))  # 2 and 3 carry each other, on 1
     assert order(torn, 0.5) == ([[4]], [1, 2, 3]) and 'objects 1, 2, 3 carry each other' in repr(order(torn, 0.5))
     for wrong in (-0.1, 1.1, 'half', np.nan):
-        with wrong('usage', '^min_probability: expected a number'):
+        with raises('usage', '^min_probability: expected a number'):
             result.removal_order(wrong)
 
 
@@ -300,7 +300,7 @@ def test_a_folder_can_be_loaded(ply, coloured_sequence, points, tmp_path):
     assert np.array_equal(topple.load(tmp_path / 'frames').frame_labels(3), coloured_sequence.frame_labels(3))
     cut = tmp_path / 'cloud' / 'points.ply'
     cut.write_bytes(cut.read_bytes()[:-1])
-    with wrong('input', 'points.ply'):
+    with raises('input', 'points.ply'):
         topple.load(tmp_path / 'cloud')
     for wrong, words in ((tmp_path / 'nowhere', 'nowhere: No such file'), (tmp_path, 'no scene.json'), (3, 'folder: expected')):
         with pytest.raises(topple.Error, match=words):
@@ -319,7 +319,7 @@ def test_generates_a_room_that_parses(device, tmp_path):
     assert sorted(os.listdir(os.path.join(scan, 'depth'))) == ['0000.png']
     assert len(topple.parse(scan, device=device, disturbances=[]).objects) > 2
     for option, words in ({'kind': 'zoo'}, '^kind zoo: expected plain'), ({'seed': 'x'}, '^seed x: expected a whole number'):
-        with wrong('usage', words):
+        with raises('usage', words):
             topple.generate(tmp_path / 'other', **option)
     (tmp_path / 'thesis').mkdir()
     (tmp_path / 'thesis' / 'chapter.tex').write_text('x')
@@ -327,7 +327,7 @@ def test_generates_a_room_that_parses(device, tmp_path):
         topple.generate(tmp_path / 'thesis')
     assert raised.value.kind == 'input' and os.listdir(tmp_path / 'thesis') == ['chapter.tex']
     assert topple.generate(scan, seed=3, single=True) == scan  # over its like
-    with wrong('input', '/proc: can.t be written to'):
+    with raises('input', '/proc: can.t be written to'):
         topple.generate('/proc/nowhere')
     listed = subprocess.run([sys.executable, '-m', 'topple', '--version'], capture_output=True, text=True, timeout=60)
     assert topple.__version__ in listed.stdout
@@ -352,12 +352,12 @@ def test_stays_says_what_may_be_touched(result):
     ({'force_N': -1}, 'stays: force_N -1: expected newtons'), ({'impulse_Ns': np.nan}, 'stays: impulse_Ns nan: expected newton seconds'),
     ({'slack_m': 'much'}, "slack_m: expected a number, not 'much'"), ({'item': 99}, 'object: expected one of the result')])
 def test_stays_refuses_what_makes_no_sense(result, given, words):
-    with wrong('usage', words):
+    with raises('usage', words):
         result.stays(**{'item': 1, 'place_m': [1, 1, 0.3], **given})
 
 
 def test_stays_is_not_pickled(result):
-    with wrong('usage', 'stays: this result was pickled'):
+    with raises('usage', 'stays: this result was pickled'):
         pickle.loads(pickle.dumps(result)).stays(1, [1, 1, 0.3])
 
 
@@ -367,5 +367,5 @@ def test_object_at_goes_from_a_place_to_the_object(result, points):
     assert result.object_at([1.3, 1.2, 1.2], 0.05) == -1 and result.object_at([1.3, 1.2, 1.2], np.inf) == box
     assert pickle.loads(pickle.dumps(result)).object_at(points[5], 0) == result.point_object[5]
     for wrong in ({'place_m': [0, 0, np.inf], 'within_m': 1}, {'place_m': [0, 0, 0], 'within_m': -1}, {'place_m': [0, 0, 0], 'within_m': None}):
-        with wrong('usage'):
+        with raises('usage'):
             result.object_at(**wrong)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import topple
-from others import wrong
+from others import raises
 import topple.formats
 from made_scans import CAMERA, POSES, colours_of, parsed, quaternion, refused, same_objects, truncated
 from topple.formats import ros_bag
@@ -282,5 +282,5 @@ def test_bags_that_are_wrong(walk, device, tmp_path):
     other = tmp_path / 'other.db3'
     other.write_bytes(b'no database')
     refused(other, device)
-    with wrong('usage', '/nowhere'):
+    with raises('usage', '/nowhere'):
         topple.formats.convert(bag, tmp_path / 'out', topple.formats.Options(topic='/nowhere'))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import topple
-from others import wrong
+from others import raises
 from topple import geometry
 
 
@@ -103,7 +103,7 @@ def test_rerun(result, tmp_path):
 
 
 def test_rerun_asks_where_to(result):
-    with wrong('usage', 'save='):
+    with raises('usage', 'save='):
         topple.to_rerun(result)
 
 
