@@ -222,7 +222,7 @@ TEST_F(Gltf, what_is_not_read_is_named) {
         "," + accessor(1, 5123, 36, "SCALAR");
     sparse.second.resize(500, '\0');
     append<std::uint32_t>(sparse.second, 8);
-    const std::pair<Box, std::initializer_list<std::string_view>> cases[] = {
+    const std::pair<Box, std::vector<std::string_view>> cases[] = {
         {box(R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"),
          {"KHR_draco_mesh_compression", "gltf-pipeline"}},
         {box("", R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}})"),

@@ -154,7 +154,7 @@ TEST_F(Octomap, bad_files) {
     const std::string zeros(2, '\0');
     const struct {
         std::string bytes;
-        std::initializer_list<std::string_view> message;
+        std::vector<std::string_view> message;
     } cases[] = {
         {"something else", {"\"# Octomap OcTree\""}},
         {head, {"without a tree"}},
