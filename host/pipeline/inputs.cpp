@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -9,21 +8,17 @@
 #include "device/stage_clock.h"
 #include "io/text.h"
 #include "objects/found_parts.h"
-#include "objects/object_stage.h"
 #include "pipeline/stages.h"
 #include "pipeline/whole_progress.h"
 #include "points/budget.h"
 #include "points/formats/frame_sequence.h"
 #include "points/formats/scan_notes.h"
 #include "points/observation.h"
-#include "points/voxel_size.h"
 #include "result/assemble.h"
 #include "result/nothing_judged.h"
 #include "safety/disturbances.h"
-#include "safety/safety_stage.h"
 #include "scale/parts_cache.h"
 #include "scale/tiled_parse.h"
-#include "solids/volume.h"
 #include "topple/parse.h"
 
 namespace topple {
