@@ -7,6 +7,7 @@
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <climits>
 #include <cstdint>
 #include <cstring>
@@ -37,28 +38,36 @@ struct Entry {
 // Nothing that is written is nested deeper.
 constexpr int deepest = 6;
 
-// All but the lock of the outermost folder.
-void unlink_all(int folder, int depth) {
-    alignas(Entry) char buffer[2048];
-    for (;;) {
-        const long bytes = ::syscall(SYS_getdents64, folder, buffer, sizeof(buffer));
-        if (bytes <= 0) return;
-        for (long at = 0; at < bytes;) {
-            const auto* entry = reinterpret_cast<const Entry*>(buffer + at);
-            const char* name = buffer + at + offsetof(Entry, name);
-            at += entry->length;
-            const bool dots = name[0] == '.' && (name[1] == 0 || (name[1] == '.' && name[2] == 0));
-            if (dots || (depth == 0 && std::strcmp(name, staging_lock) == 0)) continue;
-            if (::unlinkat(folder, name, 0) == 0 || ::unlinkat(folder, name, AT_REMOVEDIR) == 0 ||
-                depth == deepest)
-                continue;
-            const int inner =
-                ::openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-            if (inner < 0) continue;
-            unlink_all(inner, depth + 1);
-            ::close(inner);
-            ::unlinkat(folder, name, AT_REMOVEDIR);
+// Removes what is in the folder of that path, PATH_MAX long, all but the lock of the outermost one;
+// by one descriptor at a time, as there may be no more.
+void unlink_all(char* path, int depth) {
+    const std::size_t length = std::strlen(path);
+    for (bool again = true; again;) {
+        const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        if (folder < 0) return;
+        char inner[NAME_MAX + 1] = {};  // a folder that is not empty
+        alignas(Entry) char buffer[2048];
+        for (long bytes; (bytes = ::syscall(SYS_getdents64, folder, buffer, sizeof(buffer))) > 0;) {
+            for (long at = 0; at < bytes;) {
+                const auto* entry = reinterpret_cast<const Entry*>(buffer + at);
+                const char* name = buffer + at + offsetof(Entry, name);
+                at += entry->length;
+                const bool dots =
+                    name[0] == '.' && (name[1] == 0 || (name[1] == '.' && name[2] == 0));
+                if (dots || (depth == 0 && std::strcmp(name, staging_lock) == 0)) continue;
+                if (::unlinkat(folder, name, 0) != 0 &&
+                    ::unlinkat(folder, name, AT_REMOVEDIR) != 0 && errno == ENOTEMPTY)
+                    std::strncpy(inner, name, NAME_MAX);
+            }
         }
+        ::close(folder);
+        again = inner[0] != 0 && depth < deepest && length + NAME_MAX + 2 < PATH_MAX;
+        if (!again) return;
+        path[length] = '/';
+        std::strcpy(path + length + 1, inner);
+        unlink_all(path, depth + 1);
+        again = ::rmdir(path) == 0;
+        path[length] = 0;
     }
 }
 
@@ -83,11 +92,14 @@ void forget_pending(int slot) noexcept {
 }
 
 void remove_tree(const char* path) noexcept {
+    char within[PATH_MAX];
+    if (std::strlen(path) >= PATH_MAX) return;
+    std::strcpy(within, path);
     // Another thread may add a file while we remove: look again.
     for (int attempt = 0; attempt < 100; ++attempt) {
+        unlink_all(within, 0);
         const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         if (folder < 0) return;
-        unlink_all(folder, 0);
         ::unlinkat(folder, staging_lock, 0);
         ::close(folder);
         if (::rmdir(path) == 0) return;

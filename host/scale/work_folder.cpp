@@ -76,6 +76,8 @@ WorkFolder::WorkFolder(const fs::path& folder, const std::string& manifest,
     try {
         io::remove_abandoned(folder_);
         check_contents(folder_);
+        if (::chmod(folder_.c_str(), 0700) != 0)  // not before it is known to be topple's
+            io::fail(folder_, std::string("can't be kept from others: ") + std::strerror(errno));
         lock_.emplace(folder_);
         take_up(manifest_text(manifest), poll);
     } catch (...) {
@@ -101,8 +103,6 @@ void WorkFolder::make(const fs::path& folder) {
     if (errno != EEXIST) io::fail(folder_, std::string("can't be made: ") + std::strerror(errno));
     remove_ = false;
     check_own(folder_);
-    if (::chmod(folder_.c_str(), 0700) != 0)
-        io::fail(folder_, std::string("can't be kept from others: ") + std::strerror(errno));
 }
 
 void WorkFolder::take_up(const std::string& text, const std::function<void()>& poll) {

@@ -19,7 +19,7 @@ OUTPUTS = ('parse.cache', 'solids.bin', 'points.ply', 'solid.ply', 'volume.vdb',
            'verify.json', 'scene.json')
 NAMES = ('a\nb', 'a\x1b[2Jb', 'a\x1b]0;owned\x07b', 'a\u202egnp.b', 'a\u2066b\u2069', 'a\u200fb', b'a\xff\xfeb', b'\x9b31m', 'a\x7fb', '-rf', '--help',
          '%s%n%x', '%2e%2e', 'a;b', '$(touch ran)', '`touch ran`', "a'b\"c", ' a ', 'a\\b', 'a\tb', '\ufeffa', 'e\u0301', '\u5bb6', 'a' * 240, '~', '*',
-         '\r', 'a\rb', '\u2028', '\u0085', '...', '<script>alert(1)</script>', '&amp;')
+         '\r', 'a\rb', '\u2028', '\u0085', '...', '<img src=x onerror=alert(1)>', '&amp;')
 
 
 def link(target):
