@@ -14,7 +14,7 @@
 // What calls that fail say.
 namespace topple::test {
 
-// What an Error of that kind, or of any, that a call throws says.
+// What an Error that a call throws says, of that kind; of any, where it is none.
 template <class Call>
 std::string message_of(const Call& call, std::optional<ErrorKind> kind = ErrorKind::device) {
     try {

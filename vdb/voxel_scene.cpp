@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/ranked.h"
 #include "core/scene_bounds.h"
 #include "core/short_number.h"
 #include "core/sorted_order.h"
@@ -43,9 +44,7 @@ double median(const std::vector<double>& values) {
     const std::size_t middle = values.size() / 2;
     if (!(*high - *low < window)) {
         std::vector<double> sorted = values;
-        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(middle),
-                         sorted.end());
-        return sorted[middle];
+        return upper_median(sorted);
     }
     std::vector<std::size_t> count(static_cast<std::size_t>(*high - *low) + 1);
     for (const double value : values) ++count[value - *low];

@@ -7,6 +7,7 @@
 
 #include "api/arrays.h"
 #include "core/number_options.h"
+#include "core/ranked.h"
 #include "core/room_measures.h"
 #include "geometry/surfels.h"
 #include "io/text.h"
@@ -92,19 +93,13 @@ void check_cameras(const std::array<Vec3, 2>& box, const Intrinsics& intrinsics,
         for (std::size_t i = 0; i < frame.depth.size(); i += 37)
             if (frame.depth[i] > 0) readings.push_back(frame.depth[i] / intrinsics.depth_scale);
     }
-    const auto median = [](std::vector<double>& values) {
-        if (values.empty()) return 0.0;
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
-    };
     check_camera_steps(places, "carve");
-    if (const double off = median(beyond); off > farthest_apart_m)
+    if (const double off = upper_median(beyond); off > farthest_apart_m)
         throw Error(ErrorKind::input,
                     "carve: the cameras are " + io::short_number(off) +
                         " m from the points: places of poses are metres, in the points' frame; if "
                         "these are mm, multiply them by 0.001");
-    if (const double typical = median(readings); typical > farthest_apart_m)
+    if (const double typical = upper_median(readings); typical > farthest_apart_m)
         throw Error(ErrorKind::input,
                     "carve: " + depth_scale_hint(frames.size(), intrinsics.depth_scale, typical,
                                                  ScanOrigin::frames_in_memory));

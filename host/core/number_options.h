@@ -10,8 +10,7 @@
 #include "topple/topple.h"
 
 // The options of a parse that are a number, each declared once: the check of its range, and what C
-// takes, come from here. Python binds them in python/parse_arrays.cpp, and the command line's words
-// are in cli/parse_command.cpp.
+// and Python take, come from here. The command line's words are in cli/parse_command.cpp.
 namespace topple {
 
 // The finest voxel is below the noise of every sensor of rooms, and far above what overflows; the

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/ranked.h"
 #include "core/table.h"
 
 namespace topple {
@@ -154,9 +155,7 @@ class Wall {
                 out.top_m = std::max(out.top_m, double{s_.z[n]});
             });
         if (away.size() < least_samples) return std::nullopt;
-        const auto middle = away.begin() + static_cast<std::ptrdiff_t>(away.size() / 2);
-        std::nth_element(away.begin(), middle, away.end());
-        const double side = *middle < 0 ? -1 : 1;
+        const double side = upper_median(away) < 0 ? -1 : 1;
         double nearest = infinity;
         for (const double d : away) nearest = std::min(nearest, side * d);
         if (nearest < -most_beyond_m || nearest > most_apart_m) return std::nullopt;

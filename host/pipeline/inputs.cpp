@@ -127,6 +127,24 @@ ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options)
     return parse_whole(input, options, std::move(cache), std::move(timings));
 }
 
+// A scan in memory. look(device, options): the Observation.
+template <class Look>
+ParseResult parse_view(std::string source, const std::string& otherwise, WholeProgress::Input kind,
+                       std::uint64_t bytes, const ParseOptions& options, const Look& look) {
+    take_options(options);
+    refuse_file_options(options);
+    refuse_tiles(options);
+    if (source.empty()) source = otherwise;
+    const auto whole = [&](const ParseOptions& o) {
+        return run(source, o, [&](device::Device& device, StageClock& stage) {
+            Observation input = stage("ingest", [&] { return look(device, o); });
+            return find_parts(device, std::move(input), o, source, stage);
+        });
+    };
+    Budget budget(source, bytes, options);
+    return noted(tell_whole(kind, budget.polled(), whole), options);
+}
+
 }  // namespace
 
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
@@ -143,37 +161,23 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
 }
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
-    take_options(options);
-    refuse_file_options(options);
-    refuse_tiles(options);
-    const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
-    const auto parse_view = [&](const ParseOptions& o) {
-        return run(source, o, [&](device::Device& device, StageClock& stage) {
-            Observation input = stage("ingest", [&] { return observe_view(device, cloud, o); });
-            return find_parts(device, std::move(input), o, source, stage);
-        });
-    };
-    Budget budget(source, 3 * sizeof(float) * cloud.size(), options);
-    return noted(tell_whole(WholeProgress::Input::cloud, budget.polled(), parse_view), options);
+    return parse_view(cloud.source, "cloud", WholeProgress::Input::cloud,
+                      3 * sizeof(float) * cloud.size(), options,
+                      [&](device::Device& device, const ParseOptions& o) {
+                          return observe_view(device, cloud, o);
+                      });
 }
 
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
-    take_options(options);
-    refuse_file_options(options);
-    refuse_tiles(options);
-    const std::string source = frames.source.empty() ? "frames" : frames.source;
-    const auto parse_view = [&](const ParseOptions& o) {
-        return run(source, o, [&](device::Device& device, StageClock& stage) {
-            Observation input = stage("ingest", [&] { return observe_frames(device, frames, o); });
-            return find_parts(device, std::move(input), o, source, stage);
-        });
-    };
     const std::size_t count =
         std::max({frames.images.size(), frames.camera_to_world.size(), std::size_t{1}});
     const std::uint64_t pixels = io::saturating_multiply(
         std::uint64_t{frames.intrinsics.width} * frames.intrinsics.height, count);
-    Budget budget(source, io::saturating_multiply(sizeof(std::uint16_t), pixels), options);
-    return noted(tell_whole(WholeProgress::Input::frames, budget.polled(), parse_view), options);
+    return parse_view(frames.source, "frames", WholeProgress::Input::frames,
+                      io::saturating_multiply(sizeof(std::uint16_t), pixels), options,
+                      [&](device::Device& device, const ParseOptions& o) {
+                          return observe_frames(device, frames, o);
+                      });
 }
 
 }  // namespace topple

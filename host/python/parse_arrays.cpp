@@ -6,6 +6,7 @@
 
 #include "arrays.h"
 #include "busy.h"
+#include "core/number_options.h"
 #include "topple/option_names.h"
 
 namespace topple::python {
@@ -137,26 +138,16 @@ std::shared_ptr<Parsed> parse_frames(const std::vector<PyFrame>& frames, const p
 }  // namespace
 
 void bind_parse(py::module_& module) {
-    py::class_<ParseOptions>(module, "Options")
-        .def(py::init<>())
-        .def_readwrite("voxel_m", &ParseOptions::voxel_m)
-        .def_readwrite("unit_m", &ParseOptions::unit_m)
+    py::class_<ParseOptions> bound(module, "Options");
+    for (const NumberOption& option : number_options)
+        std::visit([&](auto member) { bound.def_readwrite(option.name, member); }, option.member);
+    bound.def(py::init<>())
         .def_readwrite("up", &ParseOptions::up)
         .def_readwrite("disturbances", &ParseOptions::disturbances)
         .def_readwrite("isolate", &ParseOptions::isolate)
         .def_readwrite("seed", &ParseOptions::seed)
-        .def_readwrite("tile_m", &ParseOptions::tile_m)
         .def_readwrite("max_memory_bytes", &ParseOptions::max_memory_bytes)
-        .def_readwrite("density_kg_m3", &ParseOptions::density_kg_m3)
-        .def_readwrite("friction", &ParseOptions::friction)
-        .def_readwrite("contents_kg_m3", &ParseOptions::contents_kg_m3)
         .def_readwrite("walks", &ParseOptions::walks)
-        .def_readwrite("wind_m_s", &ParseOptions::wind_m_s)
-        .def_readwrite("wind_from_deg", &ParseOptions::wind_from_deg)
-        .def_readwrite("pga_m_s2", &ParseOptions::pga_m_s2)
-        .def_readwrite("floor_amplification", &ParseOptions::floor_amplification)
-        .def_readwrite("tolerable_J", &ParseOptions::tolerable_J)
-        .def_readwrite("grouping_time_s", &ParseOptions::grouping_time_s)
         .def("read_motion",
              [](ParseOptions& o, const std::string& file, const std::optional<double>& unit_m,
                 const std::optional<double>& rate_hz, const std::optional<Vec3>& up) {

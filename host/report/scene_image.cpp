@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/ranked.h"
 #include "core/vectors.h"
 
 namespace topple::report {
@@ -25,9 +26,8 @@ Box box_of(const PackedView& view) {
         std::vector<std::uint16_t> steps;
         for (const auto& cell : view.voxels.cell) steps.push_back(cell[axis]);
         const auto at = [&](std::size_t hundredths) {
-            const auto n = static_cast<std::ptrdiff_t>((steps.size() - 1) * hundredths / 100);
-            std::nth_element(steps.begin(), steps.begin() + n, steps.end());
-            return view.origin_m[axis] + view.step_m[axis] * steps[n];
+            return view.origin_m[axis] +
+                   view.step_m[axis] * ranked(steps, (steps.size() - 1) * hundredths / 100);
         };
         box.low[axis] = at(2);
         box.high[axis] = at(98);

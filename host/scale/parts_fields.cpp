@@ -124,8 +124,8 @@ void sample_fields(Io& io, Samples& s, std::size_t count) {
     for (auto* values : {&s.lab_a, &s.lab_b}) io(*values, length(s.lab_l.size()));
 }
 
-template <class Io, class Ground>
-void ground_fields(Io& io, Ground& g) {
+template <class Io, class Parts>
+void parts_fields(Io& io, Parts& g) {
     using namespace rules;
     io(g.parts.model, shown);
     const std::size_t count = g.parts.model.size();
@@ -166,7 +166,7 @@ FoundParts read_parts(tiles::BinaryReader& file) {
     FoundParts out;
     SavedSolids solids;
     vdb::SavedVoxels voxels;
-    ground_fields(file, out);
+    parts_fields(file, out);
     const std::size_t count = out.parts.model.size();
     solid_fields(file, solids, count);
     voxel_fields(file, voxels, count);
@@ -181,14 +181,14 @@ FoundParts read_parts(tiles::BinaryReader& file) {
     return out;
 }
 
-void write_parts(tiles::BinaryWriter& file, const FoundParts& ground) {
-    const std::size_t count = ground.parts.model.size();
-    const SavedSolids solids = saved(*ground.parts.solids);
-    const vdb::SavedVoxels voxels = ground.voxels->saved();
-    ground_fields(file, ground);
+void write_parts(tiles::BinaryWriter& file, const FoundParts& found) {
+    const std::size_t count = found.parts.model.size();
+    const SavedSolids solids = saved(*found.parts.solids);
+    const vdb::SavedVoxels voxels = found.voxels->saved();
+    parts_fields(file, found);
     solid_fields(file, solids, count);
     voxel_fields(file, voxels, count);
-    file(ground.parts.sensed != nullptr);
+    file(found.parts.sensed != nullptr);
 }
 
 }  // namespace topple

@@ -9,6 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/ranked.h"
+
 namespace topple::solids {
 namespace {
 
@@ -317,10 +319,7 @@ double form_error_m(const BoundaryCells& b, double h) {
     std::vector<double> noise;
     for (std::size_t n = 0; n < b.size(); ++n)
         if (b.slots_used(n) > 0) noise.push_back(b.patches[b.slot[0][n]].noise_m);
-    if (noise.empty()) return h;
-    const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
-    std::nth_element(noise.begin(), middle, noise.end());
-    return std::clamp(3 * *middle, 0.01 * h, h);
+    return noise.empty() ? h : std::clamp(3 * upper_median(noise), 0.01 * h, h);
 }
 
 }  // namespace topple::solids

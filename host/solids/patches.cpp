@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/ranked.h"
 #include "geometry/algebraic_model.h"
 #include "solids/grid_points.h"
 #include "solids/plane_through.h"
@@ -41,12 +42,6 @@ geometry::AlgebraicModel rotated(const geometry::AlgebraicModel& model,
     return out;
 }
 
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 // The points near the model, and how far these scatter about it.
 struct Near {
     Points points;
@@ -57,7 +52,7 @@ Near near(const geometry::AlgebraicModel& model, std::span<const Eigen::Vector3d
     for (const auto& p : points) off.push_back(std::abs(geometry::distance(model, p)));
     std::vector<double> sorted = off;
     Near out;
-    out.noise_m = std::max(1.4826 * median(sorted), least_noise_m);
+    out.noise_m = std::max(1.4826 * upper_median(sorted), least_noise_m);
     for (std::size_t n = 0; n < points.size(); ++n)
         if (off[n] <= outlier * out.noise_m) out.points.push_back(points[n]);
     return out;

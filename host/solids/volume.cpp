@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/ranked.h"
 #include "core/thread_pool.h"
 #include "geometry/algebraic_model.h"
 #include "geometry/ledges.h"
@@ -44,9 +45,7 @@ std::int32_t floor_level(const SolidCells& cells, const Surfaces& geometry) {
             k.push_back(cells.k[n]);
     }
     if (k.empty()) return std::numeric_limits<std::int32_t>::min();
-    const auto middle = k.begin() + static_cast<std::ptrdiff_t>(k.size() / 2);
-    std::nth_element(k.begin(), middle, k.end());
-    return *middle;
+    return upper_median(k);
 }
 
 std::vector<vdb::StandsOn> ledges(const Surfaces& geometry) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/ranked.h"
 #include "safety/fields.h"
 #include "safety/human/convolution.h"
 #include "safety/human/passers_by.h"
@@ -43,9 +44,7 @@ std::vector<Level> levels(const WalkableMap& map, double apart_m) {
     }
     std::vector<std::pair<float, std::size_t>> medians;
     for (std::size_t n = 0; n < heights.size(); ++n) {
-        auto& h = heights[n];
-        std::nth_element(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(h.size() / 2), h.end());
-        medians.emplace_back(h[h.size() / 2], n);
+        medians.emplace_back(upper_median(heights[n]), n);
     }
     // From the largest component down, so that a level lies where most of its floor does.
     std::stable_sort(medians.begin(), medians.end(), [&](const auto& a, const auto& b) {

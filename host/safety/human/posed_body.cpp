@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/ranked.h"
 #include "safety/human/human_field.h"
 #include "topple/error.h"
 
@@ -147,11 +148,8 @@ class Poser {
             if (track(h.joint).empty()) continue;
             std::vector<double> heights;
             for (const Vec3& p : track(h.joint)) heights.push_back(p[2]);
-            const auto at =
-                heights.begin() +
-                static_cast<std::ptrdiff_t>(h.lowest ? heights.size() / 50 : heights.size() / 2);
-            std::nth_element(heights.begin(), at, heights.end());
-            return *at - h.share * stature;
+            return ranked(heights, h.lowest ? heights.size() / 50 : heights.size() / 2) -
+                   h.share * stature;
         }
         refuse_motion(motion_,
                       "has no feet, hips, shoulders or elbows: how high it is can't be told");

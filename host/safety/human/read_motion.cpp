@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "core/ranked.h"
 #include "io/text.h"
 #include "safety/human/motion_formats.h"
 #include "topple/motion.h"
@@ -35,10 +36,7 @@ double limb_length(const BodyMotion& motion, std::span<const Limb> limbs) {
         for (std::size_t f = 0; f < a.size(); ++f)
             lengths.push_back(distance(a[f], b[f]) + distance(b[f], c[f]));
     }
-    if (lengths.empty()) return 0;
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    return *middle;
+    return upper_median(lengths);
 }
 
 Vec3 mean(const BodyMotion& motion, std::initializer_list<BodyJoint> joints) {
