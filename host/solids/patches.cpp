@@ -133,6 +133,14 @@ std::optional<geometry::AlgebraicModel> taubin_fit(const geometry::AlgebraicMode
     return out;
 }
 
+// Whether it bends by radii of more than 10 um: points that span no surface, as those of one row,
+// leave a quadric's coefficients open, and what comes of them is anything.
+bool is_surface(const geometry::AlgebraicModel& model) {
+    constexpr double most_per_m = 1e5;
+    return std::all_of(model.coefficients.begin() + 4, model.coefficients.end(),
+                       [](double c) { return std::abs(c) < most_per_m; });
+}
+
 double scatter(const geometry::AlgebraicModel& model, const Points& points) {
     double sum = 0;
     for (const auto& p : points) sum += std::pow(geometry::distance(model, p), 2);
@@ -148,6 +156,8 @@ void sort(Points& points) {
 
 SurfacePatch fit_patch(geometry::AlgebraicModel model, double residual_m,
                        std::span<const Eigen::Vector3d> points) {
+    if (!is_surface(model))
+        model = points.empty() ? geometry::AlgebraicModel{} : PlaneThrough(points).model();
     double noise = residual_m;
     std::size_t inliers = points.size();
     for (int round = 0; round < rounds && points.size() >= least_points; ++round) {
@@ -160,12 +170,15 @@ SurfacePatch fit_patch(geometry::AlgebraicModel model, double residual_m,
         } else {
             const auto quadric =
                 quadric_of(model, own.points, std::max(3 * own.noise_m, 0.1 * residual_m));
-            if (!(scatter(quadric, own.points) <= 1.2 * scatter(model, own.points))) break;
+            if (!is_surface(quadric) ||
+                !(scatter(quadric, own.points) <= 1.2 * scatter(model, own.points)))
+                break;
             model = quadric;
             // Where the layers leave much of the distances, these are no noise.
             constexpr double clearly = 0.7;
             const auto exact = taubin_fit(model, own.points);
-            if (exact && scatter(*exact, own.points) < clearly * scatter(model, own.points))
+            if (exact && is_surface(*exact) &&
+                scatter(*exact, own.points) < clearly * scatter(model, own.points))
                 model = *exact;
         }
         noise = own.noise_m;

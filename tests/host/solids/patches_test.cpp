@@ -104,6 +104,22 @@ TEST(Patches, OfATubeHaveItsRadius) {
     }
 }
 
+// Points of one row leave a quadric open.
+TEST(Patches, OfARowArePlanes) {
+    Sampled s;
+    for (int n = 0; n < 200; ++n) s.add({1.4, 0.03125 * n, 0.0625});
+    geometry::Region region = level_region(0.0625);
+    region.model.degree = 2;
+    ThreadPool threads(2);
+    for (const double open : {0.0, 1e16}) {
+        region.model.coefficients[5] = open;
+        const SurfacePatch patch =
+            fit_patches(s.cloud, std::vector{region}, s.label, as_is, threads)[0];
+        for (std::size_t n = 4; n < patch.c.size(); ++n) EXPECT_LT(std::abs(patch.c[n]), 1);
+        EXPECT_NEAR(patch.distance({1.4, 2, 0.0625}), 0, 1e-5);
+    }
+}
+
 // Surfels along an edge make a narrow face of their own, whose points are those of both sides.
 TEST(Patches, OfAnEdgeAreItsSides) {
     Sampled s;
