@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,8 +22,16 @@ struct Joint {
     double log_odds = 0;          // that they are one solid object
 };
 
-// Of all pairs of joint_features(), sorted by (a, b). shell: by primitive, the probability that it
-// is the room's.
+// The joints around a primitive look at the same surfaces: they are no independent witnesses, and
+// the sum of their log-odds says too much. The same with so much added to each, nats.
+std::vector<Joint> biased_joints(std::span<const Joint> joints, double bias);
+
+// How much less sure joints are than the model says, nats, where noise breaks surfaces into more
+// fragments than on the scans that it was fitted on. samples: of each primitive of a thing.
+double doubt_of_fragments(std::vector<std::size_t> samples);
+
+// Of all pairs of joint_features(), sorted by (a, b), with that doubt. shell: by primitive, the
+// probability that it is the room's.
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
                                const ContactGraph& contacts,

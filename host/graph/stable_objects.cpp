@@ -11,7 +11,6 @@
 #include "fitted/boosted_trees.h"
 #include "graph/greedy_contraction.h"
 #include "graph/group_energy.h"
-#include "graph/joint_bias.h"
 #include "graph/outline.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
@@ -108,7 +107,7 @@ Grouping group_primitives(const ContactGraph& graph,
                           TableView<PrimitiveId, physics::MassProperties> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads) {
-    const std::vector<Joint> biased = biased_joints(joints, shell.pinned, options.joint_bias);
+    const std::vector<Joint> biased = biased_joints(joints, options.joint_bias);
     const GroupEnergy energy(graph, bodies, biased, shell, options.standing_weight);
     // What is one object for sure is one node.
     const LinkedNodes nodes(graph.primitives, options.links);

@@ -24,9 +24,9 @@ struct ShellOdds {
 struct GroupingOptions {
     std::uint64_t seed = 1;
     // Found on rooms that no model was fitted on (docs/testing.md): the weight of S(O, W) beside
-    // the joints' log-odds, and the bias of each joint (graph/joint_bias.h), nats.
+    // the joints' log-odds, and the bias of each joint (graph/joints.h), nats.
     double standing_weight = 0.3;
-    double joint_bias = -1.2;
+    double joint_bias = -1.4;
     double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
     KnownLinks links;

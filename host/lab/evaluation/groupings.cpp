@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "graph/group_energy.h"
-#include "graph/joint_bias.h"
 #include "graph/stable_objects.h"
 #include "lab/evaluation/greedy.h"
 #include "lab/evaluation/tables.h"
@@ -154,7 +153,7 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
         judged(room, join_by_probability(p.contacts, joints, weights, p.shell.pinned));
 
     const graph::GroupingOptions options;
-    const auto biased = graph::biased_joints(p.joints, p.shell.pinned, options.joint_bias);
+    const auto biased = graph::biased_joints(p.joints, options.joint_bias);
     const graph::GroupEnergy energy(p.contacts, p.bodies, biased, p.shell, options.standing_weight);
     const EnergyOf energy_of = energy.callbacks().of;
     std::vector<graph::Edge> edges;
