@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <vector>
 
 #include "fuzz/readers.h"
 #include "lab/temporary_folder.h"
+#include "testing.h"
 
 namespace topple::fuzz {
 namespace {

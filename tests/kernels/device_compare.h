@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "device/buffer.h"
 #include "random.h"
+#include "testing.h"
 
 // Comparing what kernels give, element by element.
 namespace topple::test {

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include "barrier_probe.hpp"
 #include "device/queue.h"
@@ -82,9 +79,8 @@ TEST_P(DeviceQueue, BindsSlices) {
                                .dst = buffer.slice(3 * step, step)},
                               {.count = count, .scale = 10});
     queue.run();
-    for (std::uint64_t i = 0; i < step; ++i) {
+    for (std::uint64_t i = 0; i < step; ++i)
         data[3 * step + i] = static_cast<float>(i) + 10 * static_cast<float>(step + i);
-    }
     EXPECT_TRUE(same(buffer.download(), data));
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "disturbance.hpp"
 
-#include <gtest/gtest.h>
-
 #include "core/random.h"
 #include "device/queue.h"
 #include "device_compare.h"
@@ -39,9 +37,8 @@ struct Case {
           band_first(first_band) {
         Random random(blocks * 7919 + rows * 31 + bands);
         grid.solid.resize(width * height);
-        for (auto& word : grid.solid) {
+        for (auto& word : grid.solid)
             word = static_cast<std::uint32_t>(random.bits() & random.bits() & random.bits());
-        }
         for (std::uint32_t b = 0; b < blocks; ++b) {
             const auto row = 10 + random.below(height - 20), column = random.below(width / 64);
             starts.push_back(static_cast<std::uint32_t>(row * width + column * 64));
@@ -191,9 +188,8 @@ TEST_P(DisturbanceKernels, DensityWithinItsBoundAndNativeToTheBit) {
         std::size_t at = 0, positive = 0;
         for (unsigned d = 0; d < c.directions; ++d) {
             std::vector<oracle::Entry> entries;
-            for (auto e = c.entry_first[d]; e < c.entry_first[d + 1]; ++e) {
+            for (auto e = c.entry_first[d]; e < c.entry_first[d + 1]; ++e)
                 entries.push_back({c.entry_delta[e], c.entry_row[e], c.entry_weight[e]});
-            }
             for (unsigned b = 0; b < c.bands; ++b) {
                 for (std::uint32_t cell = 0; cell < c.cells(); ++cell, ++at) {
                     const std::size_t from =

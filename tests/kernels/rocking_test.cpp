@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "rocking.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-
 #include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "lab/rooms/building.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "errors.h"
 #include "lab/temporary_folder.h"
 #include "points/formats/read_cloud.h"
 #include "topple/error.h"
@@ -303,14 +295,8 @@ TEST(Building, LeavesNothingWhenItStops) {
 }
 
 TEST(Building, RefusesWhatMakesNoSense) {
-    const auto message = [](const BuildingOptions& options) -> std::string {
-        try {
-            const Building building(options);
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::usage);
-            return error.what();
-        }
-        return "none";
+    const auto message = [](const BuildingOptions& options) {
+        return test::message_of([&] { const Building building(options); }, ErrorKind::usage);
     };
     BuildingOptions options;
     options.points = 0;

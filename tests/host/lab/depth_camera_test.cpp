@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "lab/scan/depth_camera.h"
 
-#include <gtest/gtest.h>
 #include <png.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "lab/rooms/furnished_room.h"
 #include "lab/solids/ground_truth.h"
+#include "testing.h"
 
 namespace topple::scenes {
 namespace {

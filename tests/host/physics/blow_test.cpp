@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "physics/blow.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <vector>
-
 #include "core/random.h"
 #include "physics/landscape.h"
+#include "testing.h"
 
 namespace topple::physics {
 namespace {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "in_browser.h"
-#include "report/report.h"
 #include "result/scene_json.h"
 #include "synthetic_scene.h"
 

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gmock/gmock.h>
 #include <stdlib.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "report/report.h"
+#include "testing.h"
 
 namespace topple {
 using ::testing::HasSubstr, ::testing::Not;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "clicking.h"
 #include "in_browser.h"
-#include "report/report.h"
 #include "synthetic_scene.h"
 
 // What the report's page takes down of what is wrong in a parse.

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/report.h"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <string>
-
 #include "in_browser.h"
 #include "report/verified.h"
 #include "synthetic_scene.h"
@@ -42,9 +35,8 @@ TEST_F(Report, stays_below_15_megabytes) {
     auto scene = test::SyntheticScene(0.02).make();
     // A million loose voxels, all exposed, and two million points with normals.
     for (int i = 0; i < 1000000; ++i) {
-        scene.solid.x.push_back(float(i % 100) * 0.04f);
-        scene.solid.y.push_back(float(i / 100 % 100) * 0.04f);
-        scene.solid.z.push_back(3 + float(i / 10000) * 0.04f);
+        test::add(scene.solid, float(i % 100) * 0.04f, float(i / 100 % 100) * 0.04f,
+                  3 + float(i / 10000) * 0.04f);
         scene.solid.primitive.push_back(i % 9);
         scene.solid.object.push_back(i % 6);
         scene.solid.state.push_back(0);
@@ -167,9 +159,8 @@ TEST_F(ShownReport, shows_the_scene_in_a_browser) {
         for (let x = 5; x < box.width && !at; x += 5) {
             for (let y = 5; y < box.height && !at; y += 5) if (toppleView.pick(x, y) === 3) at = [x, y];
         }
-        for (const type of ['pointerdown', 'pointerup']) {
+        for (const type of ['pointerdown', 'pointerup'])
             canvas.dispatchEvent(new PointerEvent(type, {clientX: box.left + at[0], clientY: box.top + at[1], button: 0, bubbles: true, pointerId: 1}));
-        }
         out.clicked = text('detail');
         is(toppleView.marker.parts().join(' '), 'middle lands');
         is(document.querySelectorAll('.contacts .contact').length, 1, 'of the monitor\'s part with the table\'s');
@@ -220,9 +211,7 @@ TEST_F(ShownReport, shows_the_scene_in_a_browser) {
     // Faces that look away from the camera, to three of six sides, are left out.
     EXPECT_GT(std::stoi("0" + page.data("triangles")), std::stoi("0" + page.data("faces")) / 2);
     EXPECT_LT(std::stoi("0" + page.data("triangles")), 3 * std::stoi("0" + page.data("faces")) / 2);
-    for (const char* wrong : {"THREE.", "ERR_"}) {
-        EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
-    }
+    for (const char* wrong : {"THREE.", "ERR_"}) EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
     // Three charts' worth of text: the panel of object 3, its curve, the sampler's.
     for (const char* expected :
          {"Object 3", "It tips over.", "Instability S(W)", "class=\"curve\"", "Rests on",
@@ -264,9 +253,7 @@ TEST_F(ShownReport, shows_surfaces_in_a_browser) {
     EXPECT_EQ(page.data("view"), "(none)") << "the 3D view must work";
     EXPECT_EQ(page.data("faces"), "4");
     EXPECT_GT(std::stoi("0" + page.data("pixels")), 2000);
-    for (const char* wrong : {"THREE.", "ERR_"}) {
-        EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
-    }
+    for (const char* wrong : {"THREE.", "ERR_"}) EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
 }
 
 TEST_F(ShownReport, shows_all_on_a_phone) {

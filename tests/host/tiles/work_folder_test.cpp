@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "scale/work_folder.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-#include <vector>
-
+#include "clouds.h"
 #include "errors.h"
 #include "lab/temporary_folder.h"
 #include "scale/binary_file.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 #include "scale/work_files.h"
-#include "topple/error.h"
 
 namespace topple::tiles {
 namespace {
@@ -160,9 +153,7 @@ TEST_F(WorkFolders, TellWhatIsDamaged) {
         PointSpill spill(path_, 1 << 20);
         PointCloud cloud;
         for (int n = 0; n < 20; ++n) {
-            cloud.x.push_back(0.1f * static_cast<float>(n));
-            cloud.y.push_back(1);
-            cloud.z.push_back(2);
+            test::add(cloud, 0.1f * static_cast<float>(n), 1, 2);
             cloud.red.push_back(static_cast<std::uint8_t>(n + 1));
             cloud.green.push_back(2);
             cloud.blue.push_back(3);
