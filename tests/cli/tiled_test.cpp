@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "cli/program.h"
 
 // Clouds in blocks, and what is said about a parse before it.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "cli/program.h"
 
 // What can be told from the command line alone, without looking into the input.

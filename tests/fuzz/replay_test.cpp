@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "fuzz/readers.h"
 #include "lab/temporary_folder.h"
 #include "testing.h"

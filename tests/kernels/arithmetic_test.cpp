@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
 #include "divide.hpp"
@@ -37,9 +36,8 @@ class Arithmetic : public EachBackend {
             const std::vector<float> x = Random(count).floats(count, low, high);
             Guarded<float> array(*device, count, "x");
             array.upload(x);
-            device::Queue queue(*device);
-            queue.add<Kernel>(count, {.x = array.slice()}, {.count = count, .rounds = rounds});
-            queue.run();
+            run_kernel<Kernel>(*device, count, {.x = array.slice()},
+                               {.count = count, .rounds = rounds});
             std::vector<double> want, bound;
             oracle(x, rounds, want, bound);
             EXPECT_TRUE(within(array.download(), want, bound));
@@ -65,10 +63,8 @@ TEST_P(Arithmetic, GatherMatchesTheOracle) {
     const device::Buffer<std::uint32_t> words(*device, table, "table");
     at_all_sizes<kernels::Gather>(77, [&](std::uint32_t count, std::uint32_t rounds) {
         const Guarded<std::uint32_t> sum(*device, count, "sum");
-        device::Queue queue(*device);
-        queue.add<kernels::Gather>(count, {.table = words, .sum = sum.slice()},
-                                   {.count = count, .rounds = rounds, .shift = shift});
-        queue.run();
+        run_kernel<kernels::Gather>(*device, count, {.table = words, .sum = sum.slice()},
+                                    {.count = count, .rounds = rounds, .shift = shift});
         EXPECT_EQ(sum.download(), oracle::gather(table, count, rounds));
         EXPECT_TRUE(sum.untouched());
     });
@@ -81,10 +77,8 @@ TEST_P(Arithmetic, TriadMatchesTheOracle) {
         const std::vector<float> a = random.floats(count, -3, 3), b = random.floats(count, -3, 3);
         const device::Buffer<float> in_a(*device, a, "a"), in_b(*device, b, "b");
         const Guarded<float> out(*device, count, "dst");
-        device::Queue queue(*device);
-        queue.add<kernels::Triad>(count, {.a = in_a, .b = in_b, .dst = out.slice()},
-                                  {.count = static_cast<std::uint32_t>(count), .scale = 1.7f});
-        queue.run();
+        run_kernel<kernels::Triad>(*device, count, {.a = in_a, .b = in_b, .dst = out.slice()},
+                                   {.count = static_cast<std::uint32_t>(count), .scale = 1.7f});
         std::vector<double> want, bound;
         oracle::triad(a, b, 1.7f, want, bound);
         EXPECT_TRUE(within(out.download(), want, bound));
@@ -113,9 +107,8 @@ class SegmentedSum : public EachBackend {
         const device::Buffer<std::uint32_t> order_buffer(*device, order, "order"),
             starts(*device, first, "first");
         const Guarded<std::uint32_t> sum(*device, lengths.size() * 3, "sum");
-        device::Queue queue(*device);
-        queue.add<kernels::SegmentedSum>(
-            lengths.size(),
+        run_kernel<kernels::SegmentedSum>(
+            *device, lengths.size(),
             {.ci = ci,
              .cj = cj,
              .ck = ck,
@@ -123,7 +116,6 @@ class SegmentedSum : public EachBackend {
              .first = starts,
              .sum = sum.slice()},
             {.origin_i = origin, .origin_j = origin, .origin_k = origin});
-        queue.run();
         std::vector<std::uint32_t> want;
         for (std::size_t s = 0; s < lengths.size(); ++s) {
             for (const auto& a : axis)
@@ -184,18 +176,17 @@ TEST_P(NormalCluster, MatchesTheOracle) {
                     w(on, weight, "weight"), a(on, flat, "axes");
                 const Guarded<std::int32_t> partial(on, groups * 4 * k, "partial");
                 const Guarded<std::uint32_t> choice(on, count, "cluster");
-                device::Queue queue(on);
-                queue.add<kernels::NormalCluster>(groups,
-                                                  {.nx = x,
-                                                   .ny = y,
-                                                   .nz = z,
-                                                   .weight = w,
-                                                   .axes = a,
-                                                   .partial = partial.slice(),
-                                                   .cluster = choice.slice()},
-                                                  {.count = static_cast<std::uint32_t>(count),
-                                                   .cluster_count = static_cast<std::uint32_t>(k)});
-                queue.run();
+                run_kernel<kernels::NormalCluster>(
+                    on, groups,
+                    {.nx = x,
+                     .ny = y,
+                     .nz = z,
+                     .weight = w,
+                     .axes = a,
+                     .partial = partial.slice(),
+                     .cluster = choice.slice()},
+                    {.count = static_cast<std::uint32_t>(count),
+                     .cluster_count = static_cast<std::uint32_t>(k)});
                 EXPECT_TRUE(partial.untouched());
                 EXPECT_TRUE(choice.untouched());
                 cluster = choice.download();

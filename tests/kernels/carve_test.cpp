@@ -6,7 +6,6 @@
 #include "carve_leaves.hpp"
 #include "cell_share.hpp"
 #include "core/boundary_cells.h"
-#include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
 #include "kernels/carve_case.h"
@@ -31,17 +30,15 @@ class Carve : public EachBackend {
         const std::uint64_t voxels = std::uint64_t{c.params.leaf_count} * 512;
         Guarded<std::uint32_t> evidence(on, voxels, "evidence");
         evidence.upload(std::vector<std::uint32_t>(voxels, start));
-        device::Queue queue(on);
-        queue.add<kernels::Carve>(voxels,
-                                  {.leaf_x = x,
-                                   .leaf_y = y,
-                                   .leaf_z = z,
-                                   .mixed = mixed,
-                                   .camera = camera,
-                                   .pyramid = pyramid,
-                                   .evidence = evidence.slice()},
-                                  c.params);
-        queue.run();
+        run_kernel<kernels::Carve>(on, voxels,
+                                   {.leaf_x = x,
+                                    .leaf_y = y,
+                                    .leaf_z = z,
+                                    .mixed = mixed,
+                                    .camera = camera,
+                                    .pyramid = pyramid,
+                                    .evidence = evidence.slice()},
+                                   c.params);
         EXPECT_TRUE(evidence.untouched());
         return evidence.download();
     }
@@ -114,18 +111,16 @@ class CarveLeaves : public EachBackend {
         Buffer<std::uint32_t> pyramid(on, std::span(c.pyramid), "pyramid");
         const Guarded<std::uint32_t> mixed(on, c.params.leaf_count, "mixed"),
             front(on, c.params.leaf_count, "front");
-        device::Queue queue(on);
-        queue.add<kernels::CarveLeaves>(c.params.leaf_count,
-                                        {.leaf_x = x,
-                                         .leaf_y = y,
-                                         .leaf_z = z,
-                                         .points = points,
-                                         .camera = camera,
-                                         .pyramid = pyramid,
-                                         .mixed = mixed.slice(),
-                                         .front = front.slice()},
-                                        c.params);
-        queue.run();
+        run_kernel<kernels::CarveLeaves>(on, c.params.leaf_count,
+                                         {.leaf_x = x,
+                                          .leaf_y = y,
+                                          .leaf_z = z,
+                                          .points = points,
+                                          .camera = camera,
+                                          .pyramid = pyramid,
+                                          .mixed = mixed.slice(),
+                                          .front = front.slice()},
+                                         c.params);
         EXPECT_TRUE(mixed.untouched());
         EXPECT_TRUE(front.untouched());
         return {mixed.download(), front.download()};
@@ -243,9 +238,8 @@ Measured run(device::Device& device, const ShareInputs& in) {
     const device::Buffer<float> surface(device, in.surface, "surface");
     const Guarded<std::uint32_t> share(device, n, "share");
     const Guarded<std::int32_t> moment(device, 3 * n, "moment");
-    device::Queue queue(device);
-    queue.add<kernels::CellShare>(
-        n,
+    run_kernel<kernels::CellShare>(
+        device, n,
         {.ci = i,
          .cj = j,
          .ck = k,
@@ -255,7 +249,6 @@ Measured run(device::Device& device, const ShareInputs& in) {
          .share = share.slice(),
          .moment = moment.slice()},
         {.cell_count = static_cast<std::uint32_t>(n), .voxel_m = voxel_m});
-    queue.run();
     EXPECT_TRUE(share.untouched());
     EXPECT_TRUE(moment.untouched());
     return {share.download(), moment.download()};

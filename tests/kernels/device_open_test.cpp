@@ -103,14 +103,12 @@ std::vector<float> supports(device::Device& device) {
         arrays.emplace_back(device, random.floats(count, -1, 1), "coordinates");
     }
     const device::Buffer<float> s(device, directions, "s");
-    device::Queue queue(device);
-    queue.add<kernels::SupportFunction>(
-        directions, {arrays[0], arrays[1], arrays[2], arrays[3], arrays[4], arrays[5], s},
+    run_kernel<kernels::SupportFunction>(
+        device, directions, {arrays[0], arrays[1], arrays[2], arrays[3], arrays[4], arrays[5], s},
         {.vertex_count = vertices,
          .vertex_first = 0,
          .direction_count = directions,
          .output_first = 0});
-    queue.run();
     return s.download();
 }
 
@@ -321,10 +319,9 @@ TEST_P(DeviceDialect, RoundsAsIeee754OnEveryBackend) {
     const device::Buffer<std::uint32_t> m(*device, in.m, "m"), n(*device, in.n, "n");
     const Guarded<float> f(*device, 10ull * count, "f");
     const Guarded<std::uint32_t> w(*device, 6ull * count, "w");
-    device::Queue queue(*device);
-    queue.add<kernels::DialectProbe>(
-        count, {.a = a, .b = b, .m = m, .n = n, .f = f.slice(), .w = w.slice()}, {.count = count});
-    queue.run();
+    run_kernel<kernels::DialectProbe>(
+        *device, count, {.a = a, .b = b, .m = m, .n = n, .f = f.slice(), .w = w.slice()},
+        {.count = count});
     const std::vector<float> want = expected_floats(in);
     std::vector<float> got = f.download();
     if (device->info().gpu && device->info().backend == device::Backend::vulkan)

@@ -2,7 +2,6 @@
 #include "disturbance.hpp"
 
 #include "core/random.h"
-#include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
 #include "disturbance_reach.hpp"
@@ -91,16 +90,14 @@ std::vector<std::uint32_t> run_reach(device::Device& device, const Case& c) {
         first(device, c.row_first, "first");
     const test::Guarded<std::uint32_t> blocked(device, outputs, "blocked");
     Buffer<std::int32_t> a(device, c.step_a, "a"), b(device, c.step_b, "b");
-    device::Queue queue(device);
-    queue.add<kernels::DisturbanceReach>(outputs,
-                                         {.block_start = starts,
-                                          .solid = solid,
-                                          .row_first = first,
-                                          .step_a = a,
-                                          .step_b = b,
-                                          .blocked = blocked.slice()},
-                                         {.cell_count = c.cells(), .row_count = c.rows});
-    queue.run();
+    test::run_kernel<kernels::DisturbanceReach>(device, outputs,
+                                                {.block_start = starts,
+                                                 .solid = solid,
+                                                 .row_first = first,
+                                                 .step_a = a,
+                                                 .step_b = b,
+                                                 .blocked = blocked.slice()},
+                                                {.cell_count = c.cells(), .row_count = c.rows});
     EXPECT_TRUE(blocked.untouched());
     return blocked.download();
 }
@@ -114,25 +111,24 @@ std::vector<float> run_convolution(device::Device& device, const Case& c,
     Buffer<std::int32_t> delta(device, c.entry_delta, "delta");
     Buffer<float> primary(device, c.primary, "primary"), weight(device, c.entry_weight, "weight");
     const test::Guarded<float> density(device, outputs, "density");
-    device::Queue queue(device);
-    queue.add<kernels::Disturbance>(std::uint64_t{c.directions} * ((c.bands + 3) / 4) * c.cells(),
-                                    {.block_start = starts,
-                                     .primary = primary,
-                                     .blocked = blocked,
-                                     .entry_first = first,
-                                     .entry_delta = delta,
-                                     .entry_row = row,
-                                     .entry_weight = weight,
-                                     .density = density.slice()},
-                                    {.cell_count = c.cells(),
-                                     .row_count = c.rows,
-                                     .plane_cells = Case::width * Case::height,
-                                     .direction_count = c.directions,
-                                     .footprint_first = 0,
-                                     .band_first = c.band_first,
-                                     .band_count = c.bands,
-                                     .output_first = 0});
-    queue.run();
+    test::run_kernel<kernels::Disturbance>(
+        device, std::uint64_t{c.directions} * ((c.bands + 3) / 4) * c.cells(),
+        {.block_start = starts,
+         .primary = primary,
+         .blocked = blocked,
+         .entry_first = first,
+         .entry_delta = delta,
+         .entry_row = row,
+         .entry_weight = weight,
+         .density = density.slice()},
+        {.cell_count = c.cells(),
+         .row_count = c.rows,
+         .plane_cells = Case::width * Case::height,
+         .direction_count = c.directions,
+         .footprint_first = 0,
+         .band_first = c.band_first,
+         .band_count = c.bands,
+         .output_first = 0});
     EXPECT_TRUE(density.untouched());
     return density.download();
 }

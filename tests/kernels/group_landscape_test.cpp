@@ -49,23 +49,21 @@ class GroupLandscape : public EachBackend {
         for (int t = 0; t < 2; ++t) {
             const device::Buffer<float> s(on, c.s[t], "s"), dx(on, c.part(0, t), "dx"),
                 dy(on, c.part(1, t), "dy"), dz(on, c.part(2, t), "dz");
-            device::Queue queue(on);
-            queue.add<kernels::GroupLandscape>(std::uint64_t{c.candidates} * c.tile[t],
-                                               {.s = s,
-                                                .dx = dx,
-                                                .dy = dy,
-                                                .dz = dz,
-                                                .first = first,
-                                                .row = row,
-                                                .ox = ox,
-                                                .oy = oy,
-                                                .oz = oz,
-                                                .energy = energy.slice()},
-                                               {.candidate_count = c.candidates,
-                                                .tile_directions = c.tile[t],
-                                                .padded_directions = c.directions(),
-                                                .tile_first = t ? c.tile[0] : 0});
-            queue.run();
+            run_kernel<kernels::GroupLandscape>(on, std::uint64_t{c.candidates} * c.tile[t],
+                                                {.s = s,
+                                                 .dx = dx,
+                                                 .dy = dy,
+                                                 .dz = dz,
+                                                 .first = first,
+                                                 .row = row,
+                                                 .ox = ox,
+                                                 .oy = oy,
+                                                 .oz = oz,
+                                                 .energy = energy.slice()},
+                                                {.candidate_count = c.candidates,
+                                                 .tile_directions = c.tile[t],
+                                                 .padded_directions = c.directions(),
+                                                 .tile_first = t ? c.tile[0] : 0});
         }
         EXPECT_TRUE(energy.untouched());
         return energy.download();
@@ -130,11 +128,10 @@ class SteepestDescent : public EachBackend {
         const device::Buffer<float> energy_buffer(*device, energy, "energy");
         const device::Buffer<std::uint32_t> neighbours(*device, planes, "neighbour");
         const Guarded<std::uint32_t> down(*device, energy.size(), "down");
-        device::Queue queue(*device);
-        queue.add<kernels::SteepestDescent>(
-            energy.size(), {.energy = energy_buffer, .neighbour = neighbours, .down = down.slice()},
+        run_kernel<kernels::SteepestDescent>(
+            *device, energy.size(),
+            {.energy = energy_buffer, .neighbour = neighbours, .down = down.slice()},
             {.candidate_count = candidates, .padded_directions = padded});
-        queue.run();
         std::vector<std::uint32_t> want;
         for (std::uint32_t n = 0; n < candidates; ++n) {
             const auto from = energy.begin() + static_cast<std::ptrdiff_t>(n) * padded;

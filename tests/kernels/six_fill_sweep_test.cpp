@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "six_fill_sweep.hpp"
 
-#include "device/queue.h"
 #include "kernels/device_compare.h"
 #include "kernels/device_harness.h"
 #include "oracle/six_fill_oracle.h"
@@ -91,20 +90,18 @@ class SixFillSweep : public EachBackend {
         const Guarded<std::uint32_t> back(on, c.cells.size(), "backward"),
             forth(on, c.cells.size(), "forward");
         constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64}, low[3] = {1, 1, 8};
-        device::Queue queue(on);
-        queue.add<kernels::SixFillSweep>(first.size() * 64,
-                                         {.run_first = b_first,
-                                          .run_length = b_length,
-                                          .run_leaf = b_order,
-                                          .run_ends = b_ends,
-                                          .cells = cells,
-                                          .backward = back.slice(),
-                                          .forward = forth.slice()},
-                                         {.run_count = static_cast<std::uint32_t>(first.size()),
-                                          .stride = stride[axis],
-                                          .stride_high = high[axis],
-                                          .stride_low = low[axis]});
-        queue.run();
+        run_kernel<kernels::SixFillSweep>(on, first.size() * 64,
+                                          {.run_first = b_first,
+                                           .run_length = b_length,
+                                           .run_leaf = b_order,
+                                           .run_ends = b_ends,
+                                           .cells = cells,
+                                           .backward = back.slice(),
+                                           .forward = forth.slice()},
+                                          {.run_count = static_cast<std::uint32_t>(first.size()),
+                                           .stride = stride[axis],
+                                           .stride_high = high[axis],
+                                           .stride_low = low[axis]});
         EXPECT_TRUE(back.untouched());
         EXPECT_TRUE(forth.untouched());
         return {back.download(), forth.download()};
@@ -162,20 +159,18 @@ class SixFillVote : public EachBackend {
         std::vector<Buffer<std::uint32_t>> hits;
         for (const auto& side : c.hits) hits.emplace_back(on, std::span(side), "hits");
         const Guarded<std::uint32_t> filled(on, c.cells.size(), "filled");
-        device::Queue queue(on);
-        queue.add<kernels::SixFillVote>(c.cells.size(),
-                                        {.cells = cells,
-                                         .hit_0 = hits[0],
-                                         .hit_1 = hits[1],
-                                         .hit_2 = hits[2],
-                                         .hit_3 = hits[3],
-                                         .hit_4 = hits[4],
-                                         .hit_5 = hits[5],
-                                         .filled = filled.slice()},
-                                        {.count = static_cast<std::uint32_t>(c.cells.size()),
-                                         .votes = votes,
-                                         .columns = columns ? 1u : 0u});
-        queue.run();
+        run_kernel<kernels::SixFillVote>(on, c.cells.size(),
+                                         {.cells = cells,
+                                          .hit_0 = hits[0],
+                                          .hit_1 = hits[1],
+                                          .hit_2 = hits[2],
+                                          .hit_3 = hits[3],
+                                          .hit_4 = hits[4],
+                                          .hit_5 = hits[5],
+                                          .filled = filled.slice()},
+                                         {.count = static_cast<std::uint32_t>(c.cells.size()),
+                                          .votes = votes,
+                                          .columns = columns ? 1u : 0u});
         EXPECT_TRUE(filled.untouched());
         return filled.download();
     }

@@ -2,7 +2,6 @@
 #include "voxel_normals.hpp"
 
 #include "columns_by_trial.h"
-#include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
 #include "oracle/plane_mean_oracle.h"
@@ -92,21 +91,19 @@ std::vector<float> run(device::Device& device, const Inputs& in, std::size_t cel
         d_home(device, in.home, "home");
     const Guarded<float> fit(device, 6 * in.queries, "fit");
     const float reach = static_cast<float>(radius) + 0.5f;
-    device::Queue queue(device);
-    queue.add<kernels::VoxelNormals>(in.queries,
-                                     {.cells = d_cells,
-                                      .cell_z = d_z,
-                                      .columns = d_columns,
-                                      .query_cell = d_home,
-                                      .query = d_query,
-                                      .prior = d_prior,
-                                      .fit = fit.slice()},
-                                     {.query_count = static_cast<std::uint32_t>(in.queries),
-                                      .cell_count = static_cast<std::uint32_t>(cells),
-                                      .radius = radius,
-                                      .inverse_reach2 = 1.0f / (reach * reach),
-                                      .use_prior = use_prior ? 1u : 0u});
-    queue.run();
+    run_kernel<kernels::VoxelNormals>(device, in.queries,
+                                      {.cells = d_cells,
+                                       .cell_z = d_z,
+                                       .columns = d_columns,
+                                       .query_cell = d_home,
+                                       .query = d_query,
+                                       .prior = d_prior,
+                                       .fit = fit.slice()},
+                                      {.query_count = static_cast<std::uint32_t>(in.queries),
+                                       .cell_count = static_cast<std::uint32_t>(cells),
+                                       .radius = radius,
+                                       .inverse_reach2 = 1.0f / (reach * reach),
+                                       .use_prior = use_prior ? 1u : 0u});
     EXPECT_TRUE(fit.untouched());
     return fit.download();
 }
@@ -238,19 +235,17 @@ std::vector<float> run(device::Device& device, const MeanInputs& in, int radius)
         d_home(device, in.home, "home");
     const Guarded<float> offsets(device, queries, "offsets");
     const float reach = static_cast<float>(radius) + 0.5f;
-    device::Queue queue(device);
-    queue.add<kernels::PlaneMean>(queries,
-                                  {.planes = d_planes,
-                                   .cell_z = d_z,
-                                   .columns = d_columns,
-                                   .query_cell = d_home,
-                                   .offsets = offsets.slice()},
-                                  {.query_count = static_cast<std::uint32_t>(queries),
-                                   .cell_count = static_cast<std::uint32_t>(in.z.size()),
-                                   .radius = radius,
-                                   .reach2 = reach * reach,
-                                   .least_cosine = least_cosine});
-    queue.run();
+    run_kernel<kernels::PlaneMean>(device, queries,
+                                   {.planes = d_planes,
+                                    .cell_z = d_z,
+                                    .columns = d_columns,
+                                    .query_cell = d_home,
+                                    .offsets = offsets.slice()},
+                                   {.query_count = static_cast<std::uint32_t>(queries),
+                                    .cell_count = static_cast<std::uint32_t>(in.z.size()),
+                                    .radius = radius,
+                                    .reach2 = reach * reach,
+                                    .least_cosine = least_cosine});
     EXPECT_TRUE(offsets.untouched());
     return offsets.download();
 }

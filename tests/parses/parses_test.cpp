@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "lab/temporary_folder.h"
 #include "parses/c_calls.h"
 #include "parses/try_parse.h"

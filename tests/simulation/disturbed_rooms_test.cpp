@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "device/devices.h"
 #include "host/pipeline/assessed_room.h"
 #include "host/safety/random_shaking.h"

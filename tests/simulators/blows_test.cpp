@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "core/random.h"
 #include "device/devices.h"
 #include "host/pipeline/assessed_room.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "clouds.h"
 #include "core/depth_noise.h"
 #include "points/frames_fusion.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "mesh_files.h"
 #include "points/formats/read_cloud.h"
 #include "points/formats/triangulate.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
 

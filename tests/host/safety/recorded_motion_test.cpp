@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 #include "core/random.h"
 #include "kernels/device_harness.h"
 #include "room.h"
