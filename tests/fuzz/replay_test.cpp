@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fuzz/readers.h"
+#include "host/io/files.h"
 #include "lab/temporary_folder.h"
-#include "testing.h"
 
 namespace topple::fuzz {
 namespace {
@@ -20,9 +20,7 @@ TEST_P(Corpus, is_read_or_refused) {
     ASSERT_FALSE(inputs.empty());
     const scenes::TemporaryFolder folder("topple_replay");
     for (const fs::path& input : inputs) {
-        std::ostringstream bytes;
-        bytes << std::ifstream(input, std::ios::binary).rdbuf();
-        EXPECT_EQ(try_input(reader, folder.path(), bytes.view()), "") << input;
+        EXPECT_EQ(try_input(reader, folder.path(), test::bytes_of_file(input)), "") << input;
     }
 }
 

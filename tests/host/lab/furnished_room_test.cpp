@@ -2,6 +2,7 @@
 #include "lab/rooms/furnished_room.h"
 
 #include "device/devices.h"
+#include "host/lab/boxes_meet.h"
 #include "lab/evaluation/room.h"
 #include "lab/random.h"
 #include "testing.h"
@@ -18,6 +19,11 @@ class FurnishedRoom : public ::testing::TestWithParam<bool> {
     static World room(std::uint64_t seed) {
         return furnished_room({.seed = seed, .varied = GetParam()});
     }
+    static std::map<std::uint64_t, World> rooms() {
+        std::map<std::uint64_t, World> out;
+        for (std::uint64_t seed = 0; seed < seeds; ++seed) out.emplace(seed, room(seed));
+        return out;
+    }
 };
 INSTANTIATE_TEST_SUITE_P(Furniture, FurnishedRoom, ::testing::Bool(),
                          [](const auto& kind) { return kind.param ? "varied" : "plain"; });
@@ -28,15 +34,10 @@ std::string name(const World& world, std::int32_t part) {
 }
 
 TEST_P(FurnishedRoom, SolidsNeverOverlap) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         for (std::size_t a = 0; a < world.parts.size(); ++a) {
             for (std::size_t b = a + 1; b < world.parts.size(); ++b) {
-                const auto p = world.parts[a].bounds(), q = world.parts[b].bounds();
-                bool near = true;
-                for (std::size_t k = 0; k < 3; ++k)
-                    near = near && p[0][k] < q[1][k] - 1e-9 && q[0][k] < p[1][k] - 1e-9;
-                if (!near) continue;
+                if (!boxes_meet(world.parts[a], world.parts[b])) continue;
                 EXPECT_GT(gap(world.parts[a], world.parts[b]), -1e-6)
                     << "seed " << seed << ": " << name(world, static_cast<std::int32_t>(a))
                     << " and " << name(world, static_cast<std::int32_t>(b));
@@ -46,8 +47,7 @@ TEST_P(FurnishedRoom, SolidsNeverOverlap) {
 }
 
 TEST_P(FurnishedRoom, FixedPartsTouch) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         for (const auto& [a, b] : world.fixed) {
             const double g = gap(world.parts[a], world.parts[b]);
             EXPECT_LT(std::abs(g), 1e-3)
@@ -59,8 +59,7 @@ TEST_P(FurnishedRoom, FixedPartsTouch) {
 // What is carried touches its supporter's top with the middle of its underside, and is nowhere
 // lower.
 TEST_P(FurnishedRoom, SupportHolds) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         for (const auto& [supporter, supported] : world.support) {
             const Part& below = world.parts[supporter];
             const Part& above = world.parts[supported];
@@ -88,8 +87,7 @@ std::vector<Vec3> footprint(const Part& part) {
 // With one density everywhere, nothing that stands freely would tip: seen from any side, the center
 // of mass is over what its feet span.
 TEST_P(FurnishedRoom, EverythingStands) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         std::vector<std::vector<Vec3>> feet(world.objects.size());
         for (const auto& pair : world.support) {
             const Part& foot = world.parts[pair.second];
@@ -122,8 +120,7 @@ TEST_P(FurnishedRoom, EverythingStands) {
 
 // Every object but the room is held: by a support, or by a joint with a wall.
 TEST_P(FurnishedRoom, NothingFloats) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         std::set<std::int32_t> held{0};
         for (const auto& pair : world.support) held.insert(world.parts[pair.second].object);
         for (const auto& [a, b] : world.fixed) {
@@ -136,8 +133,7 @@ TEST_P(FurnishedRoom, NothingFloats) {
 }
 
 TEST_P(FurnishedRoom, PartsOfAnObjectAreJoined) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         std::vector<std::size_t> group(world.parts.size());
         for (std::size_t k = 0; k < group.size(); ++k) group[k] = k;
         const auto root = [&](std::size_t k) {
@@ -158,8 +154,7 @@ TEST_P(FurnishedRoom, PartsOfAnObjectAreJoined) {
 }
 
 TEST_P(FurnishedRoom, MiddleStaysFree) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         const auto middle = free_middle(world);
         for (double u = -1; u <= 1; u += 0.1) {
             for (double v = -1; v <= 1; v += 0.1) {
@@ -177,8 +172,7 @@ TEST_P(FurnishedRoom, IsRichAndVaried) {
     std::set<std::string> names;
     std::set<Shape> shapes;
     std::size_t fewest = 1000, most = 0;
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const World world = room(seed);
+    for (const auto& [seed, world] : rooms()) {
         for (const TrueObject& object : world.objects) names.insert(object.name);
         for (const Part& part : world.parts) shapes.insert(part.shape);
         fewest = std::min(fewest, world.objects.size());

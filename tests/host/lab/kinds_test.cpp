@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clouds.h"
-#include "errors.h"
+#include "host/io/files.h"
 #include "lab/evaluation/kind_score.h"
 #include "lab/rooms/composer.h"
 #include "lab/scan/scan.h"
@@ -158,11 +158,6 @@ TEST_P(EachKind, has_the_same_room_for_a_seed_and_another_for_the_next) {
     EXPECT_TRUE(a.room != c.room || a.parts.size() != c.parts.size());
 }
 
-std::string text_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST_P(EachKind, scans_are_the_same_bytes_for_one_thread_and_three) {
     const World world = make_world(GetParam(), 2);
     const TemporaryFolder folder("topple_kinds");
@@ -173,7 +168,9 @@ TEST_P(EachKind, scans_are_the_same_bytes_for_one_thread_and_three) {
                    GetParam());
     }
     for (const char* file : {"cloud.ply", "truth.ply", "truth.json"})
-        EXPECT_EQ(text_of(folder.path() / "1" / file), text_of(folder.path() / "3" / file)) << file;
+        EXPECT_EQ(test::bytes_of_file(folder.path() / "1" / file),
+                  test::bytes_of_file(folder.path() / "3" / file))
+            << file;
 }
 
 TEST_P(EachKind, truth_names_every_object_that_it_labels) {
@@ -183,7 +180,7 @@ TEST_P(EachKind, truth_names_every_object_that_it_labels) {
     const Scan made = scan(world, options);
     const TemporaryFolder folder("topple_kinds");
     write_scan(folder.path(), world, made, options, GetParam());
-    const auto truth = nlohmann::json::parse(text_of(folder.path() / "truth.json"));
+    const auto truth = nlohmann::json::parse(test::bytes_of_file(folder.path() / "truth.json"));
     std::set<int> ids;
     for (const auto& object : truth["objects"]) ids.insert(object["id"].get<int>());
     for (const auto& object : truth["objects"]) {

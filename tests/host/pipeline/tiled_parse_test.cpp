@@ -3,7 +3,7 @@
 #include <mutex>
 #include <thread>
 
-#include "errors.h"
+#include "host/io/files.h"
 #include "lab/rooms/building.h"
 #include "lab/temporary_folder.h"
 #include "points/formats/read_cloud.h"
@@ -46,14 +46,12 @@ struct Output {
     bool operator==(const Output&) const = default;
 };
 
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 Output output_of(const ParseResult& result, const fs::path& written) {
     write_outputs(result, written);
-    Output out{text_of(written / "points.ply"), text_of(written / "solid.ply"), {}, {}};
+    Output out{test::bytes_of_file(written / "points.ply"),
+               test::bytes_of_file(written / "solid.ply"),
+               {},
+               {}};
     for (const Primitive& p : result.scene.primitives) out.object_of_primitive.push_back(p.object);
     for (const Object& o : result.scene.objects) {
         out.figures.insert(out.figures.end(), {o.mass_kg, o.barrier_J, o.release_J});
@@ -262,11 +260,6 @@ class ThreadCrew final : public Crew {
     std::size_t member_, stages_ = 0;
 };
 
-std::string bytes_in(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class Crews : public ::testing::Test {
   protected:
     Crews() : folder_("topple_crew"), cloud_(folder_.path() / "room.ply") {
@@ -281,7 +274,7 @@ class Crews : public ::testing::Test {
     std::pair<std::string, std::string> written(const ParseResult& result) const {
         const auto out = folder_.path() / "out";
         write_outputs(result, out);
-        return {bytes_in(out / "points.ply"), bytes_in(out / "solid.ply")};
+        return {test::bytes_of_file(out / "points.ply"), test::bytes_of_file(out / "solid.ply")};
     }
 
     // A parse by so many members; `helpers` are the options of all but the leader.

@@ -227,7 +227,7 @@ TEST_F(PageCorrections, joins_objects_and_says_what_they_are) {
 // As scene.json has them once a parse has kept to some.
 TEST_F(PageCorrections, keeps_corrections_of_this_parse) {
     write_report(folder_ / "report.html", test::SyntheticScene(0.2).make());
-    auto html = read(folder_ / "report.html");
+    auto html = test::bytes_of_file(folder_ / "report.html");
     const std::string data = "id=\"data\">{";
     html.insert(
         html.find(data) + data.size(),

@@ -140,7 +140,8 @@ TEST_F(Page, has_no_fault_that_axe_finds) {
     if (axe_script().empty())
         GTEST_SKIP() << "axe-core is missing: pip install axe-core-python into build/venv (or run "
                         "./dev setup)";
-    const auto page = open(test::SyntheticScene(0.2).make(), read(axe_script()) + R"(;
+    const auto page =
+        open(test::SyntheticScene(0.2).make(), test::bytes_of_file(axe_script()) + R"(;
         const faults = [];
         document.getElementById('glossary').open = true;
         for (const id of [null, 3]) {

@@ -2,12 +2,11 @@
 #include "report/pictures.h"
 
 #include <png.h>
-#include <stdlib.h>
 
+#include "host/io/files.h"
 #include "report/depth_image.h"
 #include "report/part_spots.h"
 #include "synthetic_scene.h"
-#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::report {
@@ -89,16 +88,8 @@ TEST(Camera, the_box_fits_into_the_picture_and_fills_it) {
     }
 }
 
-class PicturesOfAScene : public ::testing::Test {
+class PicturesOfAScene : public test::Files {
   protected:
-    PicturesOfAScene() {
-        auto name = (fs::temp_directory_path() / "topple-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~PicturesOfAScene() override {
-        std::error_code error;
-        fs::remove_all(folder_, error);
-    }
     fs::path drawn(const std::string& name, const Scene& scene) {
         fs::create_directory(folder_ / name);
         write_pictures(folder_ / name, scene);
@@ -109,11 +100,6 @@ class PicturesOfAScene : public ::testing::Test {
         for (const auto& entry : fs::directory_iterator(folder))
             out.insert(entry.path().filename().string());
         return out;
-    }
-    static std::string bytes(const fs::path& file) {
-        std::ostringstream out;
-        out << std::ifstream(file, std::ios::binary).rdbuf();
-        return out.str();
     }
     struct Pixels {
         png_uint_32 width = 0, height = 0;
@@ -137,8 +123,6 @@ class PicturesOfAScene : public ::testing::Test {
             count += std::memcmp(&a.rgb[at], &b.rgb[at], 3) != 0;
         return count;
     }
-
-    fs::path folder_;
 };
 
 TEST_F(PicturesOfAScene, are_drawn_the_same_each_time) {
@@ -149,7 +133,7 @@ TEST_F(PicturesOfAScene, are_drawn_the_same_each_time) {
     EXPECT_EQ(names(a), all);
     const Pixels objects = pixels(a / "view-objects.png");
     for (const std::string& name : all) {
-        EXPECT_EQ(bytes(a / name), bytes(b / name)) << name;
+        EXPECT_EQ(test::bytes_of_file(a / name), test::bytes_of_file(b / name)) << name;
         const Pixels picture = pixels(a / name);
         EXPECT_EQ(picture.width, 1280u);
         EXPECT_EQ(picture.height, 800u);

@@ -19,7 +19,7 @@ class ShownReport : public test::InBrowser {};
 TEST_F(Report, is_one_file_whose_text_can_not_break_out) {
     const auto scene = test::SyntheticScene(0.08).make();
     write_report(folder_ / "report.html", scene, {}, {{}, scene.source});
-    const auto html = read(folder_ / "report.html");
+    const auto html = test::bytes_of_file(folder_ / "report.html");
     EXPECT_NE(html.find("<title>topple: made-up &lt;room&gt; &amp; &quot;hall&quot; "
                         "&lt;/script&gt;&lt;b&gt;.ply</title>"),
               std::string::npos);
@@ -52,14 +52,15 @@ TEST_F(Report, stays_below_15_megabytes) {
 TEST_F(Report, takes_what_a_simulator_found) {
     const fs::path file = folder_ / "report.html";
     write_report(file, test::SyntheticScene(0.1).make());
-    const std::string before = read(file);
+    const std::string before = test::bytes_of_file(file);
     EXPECT_NE(before.find("id=\"verified\">null</script>"), std::string::npos);
     EXPECT_TRUE(add_verification(file, R"({"simulator": "</script><b>"})"));
-    EXPECT_NE(read(file).find(R"(id="verified">{"simulator": "\u003c/script>\u003cb>"}</script>)"),
+    EXPECT_NE(test::bytes_of_file(file).find(
+                  R"(id="verified">{"simulator": "\u003c/script>\u003cb>"}</script>)"),
               std::string::npos);
     // A second time it is replaced.
     EXPECT_TRUE(add_verification(file, "null"));
-    EXPECT_EQ(read(file), before);
+    EXPECT_EQ(test::bytes_of_file(file), before);
     std::ofstream(folder_ / "old.html") << "<html></html>";
     EXPECT_FALSE(add_verification(folder_ / "old.html", "null"));
     EXPECT_THROW(add_verification(folder_ / "missing.html", "null"), Error);

@@ -7,6 +7,7 @@
 
 #include "clouds.h"
 #include "errors.h"
+#include "host/io/files.h"
 #include "lab/temporary_folder.h"
 #include "scale/binary_file.h"
 #include "scale/point_spill.h"
@@ -22,10 +23,6 @@ class WorkFolders : public ::testing::Test {
   protected:
     void put(const std::string& name, const std::string& text) const {
         std::ofstream(path_ / name, std::ios::binary) << text;
-    }
-    std::string text_of(const fs::path& file) const {
-        std::ifstream in(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
     }
     void put_block(const std::string& name) const {
         BinaryWriter out(path_ / name);
@@ -91,7 +88,7 @@ TEST_F(WorkFolders, LeaveWhatIsNotOurs) {
     leave("other cloud");
     put("thesis.tex", "x");
     expect_refused("thesis.tex");
-    EXPECT_EQ(text_of(path_ / "thesis.tex"), "x");
+    EXPECT_EQ(test::bytes_of_file(path_ / "thesis.tex"), "x");
 }
 
 // By their names alone files without a manifest are not ours.
@@ -99,7 +96,7 @@ TEST_F(WorkFolders, LeaveFilesWithoutOurMark) {
     fs::create_directory(path_);
     put("block-3", "my own notes on block 3");
     expect_refused("block-3");
-    EXPECT_EQ(text_of(path_ / "block-3"), "my own notes on block 3");
+    EXPECT_EQ(test::bytes_of_file(path_ / "block-3"), "my own notes on block 3");
 }
 
 TEST_F(WorkFolders, LeaveLinksAlone) {
@@ -113,7 +110,7 @@ TEST_F(WorkFolders, LeaveLinksAlone) {
     leave("cloud");
     fs::create_symlink(elsewhere / "block-0", path_ / "block-1");
     expect_refused("block-1");
-    EXPECT_EQ(text_of(elsewhere / "block-0"), "x");
+    EXPECT_EQ(test::bytes_of_file(elsewhere / "block-0"), "x");
 }
 
 // As a full disk leaves it, or a bit that turned.
@@ -168,7 +165,7 @@ TEST_F(WorkFolders, TellWhatIsDamaged) {
     ASSERT_EQ(all.size(), 9u);
     for (const std::string& name : all) {
         if (name == manifest_name || name == FolderLock::file_name) continue;
-        const std::string text = text_of(whole / name);
+        const std::string text = test::bytes_of_file(whole / name);
         const bool of_bin = name.find("0_0_0") != std::string::npos;
         const std::string told = of_bin                   ? "cells-0_0_0"
                                  : name.ends_with(".bin") ? "bins.bin"
