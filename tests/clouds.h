@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
+#include "standard.h"
 #include "topple/input.h"
 
 // Clouds, made point by point, and compared so.

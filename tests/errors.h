@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
+#include "testing.h"
 #include "topple/error.h"
 
 // What calls that fail say.
@@ -35,9 +28,8 @@ void expect_input_error(Call call, const std::vector<std::string_view>& parts) {
         const std::string message = error.what();
         EXPECT_EQ(error.kind(), ErrorKind::input) << message;
         for (const char c : message) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << message;
-        for (const auto part : parts) {
+        for (const auto part : parts)
             EXPECT_NE(message.find(part), std::string::npos) << message << "\nshould say: " << part;
-        }
         return;
     }
     ADD_FAILURE() << "no error, where one should say: " << (parts.empty() ? "" : parts[0]);

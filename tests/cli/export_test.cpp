@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -40,44 +41,40 @@ class Exports : public Program {
 };
 
 TEST_F(Exports, are_refused_where_there_is_nothing_to_export) {
-    expect_failure(2, {"export", "nowhere"}, {"say what to write", "--mjcf"});
+    fails(2, "export nowhere", {"say what to write", "--mjcf"});
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"export", "nowhere", "--mjcf", "to"}, {"verify", "nowhere"}})
         expect_failure(1, command, {"nowhere: No such file"});
     put("other/notes.txt", "");
-    expect_failure(1, {"export", "other", "--mjcf", "to"}, {"other: holds no output of topple"});
-    expect_failure(1, {"verify", "other"}, {"other: holds no output of topple"});
+    fails(1, "export other --mjcf to", {"other: holds no output of topple"});
+    fails(1, "verify other", {"other: holds no output of topple"});
     put("mine/scene.json", "{}");
-    expect_failure(1, {"export", "mine", "--mjcf", "to"}, {"scene.json"});
-    expect_failure(1, {"verify", "mine"}, {"scene.json"});
-    expect_failure(2, {"verify", "mine", "--seconds", "0"}, {"--seconds"});
-    expect_failure(2, {"verify", "mine", "--seconds", "nan"}, {"--seconds"});
-    expect_failure(2, {"verify", "mine", "--time-limit", "-1"}, {"--time-limit"});
+    fails(1, "export mine --mjcf to", {"scene.json"});
+    fails(1, "verify mine", {"scene.json"});
+    fails(2, "verify mine --seconds 0", {"--seconds"});
+    fails(2, "verify mine --seconds nan", {"--seconds"});
+    fails(2, "verify mine --time-limit -1", {"--time-limit"});
 }
 
 TEST_F(Exports, are_checked_before_a_long_parse) {
     put_plane("plane.xyz");
     put("others/scene.xml", "<mujoco/>");
-    expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--mjcf", "others"},
-                   {"others/scene.xml: exists and is no export of topple"});
-    expect_failure(2, {"parse", "plane.xyz", "-o", "out", "--mjcf", "to", "--tile", "5"},
-                   {"--tile", "blocks"});
+    fails(1, "parse plane.xyz -o out --mjcf others",
+          {"others/scene.xml: exists and is no export of topple"});
+    fails(2, "parse plane.xyz -o out --mjcf to --tile 5", {"--tile", "blocks"});
     expect_failure(2, {"parse", "plane.xyz", "-o", "out", "--mjcf", ""}, {"--mjcf"});
 }
 
 TEST_F(Exports, of_a_parse_and_of_its_output_are_the_same_and_stand) {
     put_crate("crate.xyz");
-    const Finished parsed = run({"parse", "crate.xyz", "-o", "out", "--backend", "native",
-                                 "--disturbance", "wind", "--mjcf", "direct"});
-    ASSERT_EQ(parsed.code, 0) << parsed.err;
+    const Finished parsed =
+        succeeds("parse crate.xyz -o out --backend native --disturbance wind --mjcf direct");
     EXPECT_THAT(parsed.out, HasSubstr("1 free bodies"));
-    const Finished exported = run({"export", "out", "--mjcf", "read"});
-    ASSERT_EQ(exported.code, 0) << exported.err;
+    const Finished exported = succeeds("export out --mjcf read");
     for (const char* name : {"scene.xml", "bodies.json"})
         EXPECT_EQ(bytes_of_file(in("direct") / name), bytes_of_file(in("read") / name));
 
-    const Finished verified = run({"verify", "out", "--seconds", "1"});
-    ASSERT_EQ(verified.code, 0) << verified.err;
+    const Finished verified = succeeds("verify out --seconds 1");
     EXPECT_THAT(verified.out, HasSubstr(": 1 of 1 objects stay within 1 cm"));
     const auto verdict = json_of("out/verify.json");
     EXPECT_EQ(verdict.at("schema"), "topple.verify/1");
@@ -88,32 +85,30 @@ TEST_F(Exports, of_a_parse_and_of_its_output_are_the_same_and_stand) {
     EXPECT_NE(report.find("id=\"verified\">{"), std::string::npos);
 
     // Once more, over the first, as JSON.
-    const Finished again = run({"verify", "out", "--seconds", "0.1", "--json"});
-    ASSERT_EQ(again.code, 0) << again.err;
+    const Finished again = succeeds("verify out --seconds 0.1 --json");
     EXPECT_EQ(again.out, bytes_of_file(in("out/verify.json")));
     EXPECT_EQ(again.err, "");
     // What verify adds does not keep the next parse from replacing the folder.
-    EXPECT_EQ(run({"parse", "crate.xyz", "-o", "out", "--quiet", "--disturbance", "wind"}).code, 0);
+    succeeds("parse crate.xyz -o out --quiet --disturbance wind");
     EXPECT_FALSE(std::filesystem::exists(in("out/verify.json")));
 
     put("others/scene.xml", "<mujoco/>");
-    expect_failure(1, {"export", "out", "--mjcf", "others"},
-                   {"others/scene.xml: exists and is no export of topple"});
+    fails(1, "export out --mjcf others", {"others/scene.xml: exists and is no export of topple"});
     std::filesystem::resize_file(in("out/solids.bin"), 200);
-    expect_failure(1, {"export", "out", "--mjcf", "to"}, {"solids.bin"});
-    const Finished damaged = run({"verify", "out"});
+    fails(1, "export out --mjcf to", {"solids.bin"});
+    const Finished damaged = topple("verify out");
     EXPECT_EQ(damaged.code, 1);
     EXPECT_THAT(damaged.err, HasSubstr("topple: out/solids.bin: is damaged"));
     EXPECT_FALSE(std::filesystem::exists(in("out/verify.json")));
     std::filesystem::remove(in("out/solids.bin"));
-    expect_failure(1, {"export", "out", "--mjcf", "to"}, {"solids.bin: is missing"});
+    fails(1, "export out --mjcf to", {"solids.bin: is missing"});
 }
 
 TEST_F(Exports, are_not_verified_without_the_simulator) {
     put_crate("crate.xyz");
-    ASSERT_EQ(run({"parse", "crate.xyz", "-o", "out", "--quiet", "--disturbance", "wind"}).code, 0);
+    succeeds("parse crate.xyz -o out --quiet --disturbance wind");
     ::setenv("TOPPLE_READERS", in("").c_str(), 1);
-    const Finished finished = run({"verify", "out"});
+    const Finished finished = topple("verify out");
     ::unsetenv("TOPPLE_READERS");
     EXPECT_EQ(finished.code, 2);
     EXPECT_THAT(finished.err, HasSubstr("no program topple-mujoco"));
@@ -121,11 +116,94 @@ TEST_F(Exports, are_not_verified_without_the_simulator) {
     const std::filesystem::path broken = put("topple-mujoco", "#!/bin/sh\nexit 127\n");
     std::filesystem::permissions(broken, std::filesystem::perms::owner_all);
     ::setenv("TOPPLE_READERS", in("").c_str(), 1);
-    const Finished crashed = run({"verify", "out"});
+    const Finished crashed = topple("verify out");
     ::unsetenv("TOPPLE_READERS");
     EXPECT_EQ(crashed.code, 3);
     EXPECT_THAT(crashed.err, HasSubstr("exit code 127"));
     EXPECT_THAT(crashed.err, HasSubstr("apt-get install libmujoco-dev"));
+}
+
+// The command that draws one object's landscapes.
+
+using DrawLandscape = Program;
+
+TEST_F(DrawLandscape, refuses_what_has_none) {
+    fails(2, "landscape", {"OUT"});
+    fails(1, "landscape nowhere", {"nowhere"});
+    put("other/notes.txt", "");
+    fails(1, "landscape other", {"other: holds no output of topple"});
+    put("mine/scene.json", "{}");
+    fails(1, "landscape mine", {"scene.json"});
+    put_plane("plane.xyz");
+    succeeds("parse plane.xyz -o out --quiet");
+    fails(1, "landscape out", {"no object that can move"});
+    fails(2, "landscape out --object 0", {"--object 0", "building"});
+    fails(2, "landscape out --object 99", {"--object 99"});
+    fails(2, "landscape out --object -1", {"--object"});
+    for (const char* name : {"one.jpg", "one", ".png", "one.PNG.txt"})
+        expect_failure(2, {"landscape", "out", "-o", name}, {name, ".png or .svg"});
+}
+
+// What stands below the table is of the objects whose barrier the table doesn't give from 0, and
+// says how many those are; each row says what its object rests on.
+void expect_told_summary(const std::string& out) {
+    std::istringstream lines(out);
+    std::set<std::string> uncertain;
+    std::size_t rows = 0, told = 0;
+    for (std::string line; std::getline(lines, line);) {
+        char id[16], barrier[16], carriers[64];
+        char risk[16];  // by wind alone
+        if (std::sscanf(line.c_str(), " %15[0-9] %*s %*f %*f %15s %*f %*s %15s %63s", id, barrier,
+                        risk, carriers) == 4) {
+            ++rows;
+            EXPECT_TRUE(std::isdigit(risk[0]) || std::string(risk) == "-") << line;
+            if (std::string(barrier).starts_with("0-")) uncertain.insert(id);
+            EXPECT_TRUE(std::isdigit(carriers[0]) || std::string(carriers) == "-") << line;
+        } else if (std::sscanf(line.c_str(), "Object %15[0-9], ", id) == 1) {
+            ++told;
+            EXPECT_FALSE(uncertain.contains(id)) << line;
+        }
+    }
+    EXPECT_EQ(rows, 12u) << out;
+    EXPECT_EQ(told, 3u) << out;
+    EXPECT_FALSE(uncertain.empty()) << out;
+    // By category the third comes before some with a risk, and has none itself.
+    EXPECT_THAT(out, HasSubstr("\nThe first 3 to look at of the "));
+    EXPECT_THAT(
+        out,
+        HasSubstr(" Nothing upsets it as measured; if its foot is one error smaller, it falls"));
+    EXPECT_THAT(out, HasSubstr(" whose barrier is above its error; that of "));
+}
+
+// Of all files, the cache among them.
+void expect_told_size(const std::string& estimate, const std::filesystem::path& out) {
+    std::uintmax_t taken = 0;
+    for (const auto& file : std::filesystem::directory_iterator(out)) taken += file.file_size();
+    const double told = nlohmann::json::parse(estimate).at("output_bytes");
+    EXPECT_GT(told, 0.8 * static_cast<double>(taken));
+    EXPECT_LT(told, 1.25 * static_cast<double>(taken));
+}
+
+TEST_F(DrawLandscape, makes_pictures_of_the_worst_or_the_chosen_object) {
+    succeeds("generate room --seed 2 --frames 10");
+    const Finished parsed =
+        succeeds("parse room -o out --voxel 0.04 --disturbance wind --backend native");
+    expect_told_summary(parsed.out);
+    expect_told_size(topple("estimate room --voxel 0.04 --backend native --json").out, in("out"));
+    const Finished worst = succeeds("landscape out");
+    EXPECT_THAT(worst.out, HasSubstr(".png"));
+    EXPECT_THAT(worst.out, HasSubstr("Object "));
+    const Finished chosen = succeeds("landscape out --object 1 -o one.svg");
+    const std::string svg = bytes_of_file(in("one.svg"));
+    EXPECT_NE(svg.find("</svg>"), std::string::npos);
+    std::size_t pictures = 0;
+    for (const std::string& name : everything()) {
+        if (name.find("object-") == std::string::npos) continue;
+        ++pictures;
+        EXPECT_TRUE(bytes_of_file(in(name)).starts_with("\x89PNG")) << name;
+    }
+    EXPECT_EQ(pictures, 1u);
+    fails(1, "landscape out -o none/x.png", {"none: can't be written to"});
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "host/io/mesh_files.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
 
@@ -17,18 +16,6 @@ class Input : public Program {
     void refused(const std::string& file, std::vector<std::string> parts = {}) const {
         parts.push_back(file);
         expect_failure(1, {"parse", file, "-o", "out", "--quiet"}, parts);
-    }
-    // Parses; nothing on either stream, and OUT whole.
-    void parsed(const std::string& file) const {
-        SCOPED_TRACE(file);
-        const Finished finished = run({"parse", file, "-o", "out", "--quiet"});
-        EXPECT_EQ(finished.code, 0);
-        EXPECT_EQ(finished.out, "");
-        EXPECT_EQ(finished.err, "");
-        for (const char* name : {"points.ply", "solid.ply", "volume.vdb", "report.html",
-                                 "landscapes.json", "scene.json"}) {
-            EXPECT_TRUE(std::filesystem::exists(in("out") / name)) << name;
-        }
     }
     // A small sequence of depth images of a room.
     void put_sequence(const std::string& name, unsigned frames) const {
@@ -52,98 +39,40 @@ std::string ply_header(const std::string& vertices) {
            "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
 }
 
-std::string pcd_header(const std::string& points) {
-    return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
-           points + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points + "\nDATA binary\n";
-}
-
 std::string floats(std::size_t count, float value) {
     std::string bytes;
     for (std::size_t i = 0; i < count; ++i) append(bytes, value);
     return bytes;
 }
 
-TEST_F(Input, missing_or_of_no_known_kind) {
-    refused("missing.ply", {"No such file"});
-    put("scan.doc", "v 0 0 0\n");
-    refused("scan.doc", {".ply"});
-    put("scan.obj", "v 0 0 0\n");
-    refused("scan.obj", {"1 point was found"});
+// One of each kind; the readers' own tests have the rest.
+TEST_F(Input, that_is_none_is_refused) {
+    const std::string cut = ply_header("1000") + floats(3 * 999 + 2, 1);
+    const std::pair<const char*, BadFile> cases[] = {
+        {"scan.doc", {"v 0 0 0\n", {".ply"}}},
+        {"scan.obj", {"v 0 0 0\n", {"1 point was found"}}},
+        {"empty.ply", {"", {"empty"}}},
+        {"cut.ply", {cut, {"1000"}}},
+        {"cut-header.pcd", {"# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4", {}}},
+        {"image.xyz", {std::string("\x89PNG\r\n\x1a\n\0\1\2", 11), {}}},
+        {"huge.ply", {ply_header("1000000000000") + floats(3, 1), {"1000000000000"}}},
+        {"nan.ply", {ply_header("100") + floats(300, NAN), {"finite"}}},
+        {"words.xyz", {"a b c\na b c\n", {"line 2: \"a\" is not a number", "expected x y z"}}},
+        {"none.xyz", {"# x y z\n", {"has no points"}}},
+        {"one.xyz", {"1 2 3\n", {"1 point was found", "takes 8"}}},
+        {"far.xyz", {"0 0 0\n100000 0 0\n", {"2 points"}}},
+        {"same.ply",
+         {ply_header("5000") + floats(15000, 0.7f), {"5000 points", "no surface", "8 voxels"}}},
+    };
+    for (const auto& [name, bad] : cases) {
+        put(name, bad.bytes);
+        refused(name, {bad.says.begin(), bad.says.end()});
+    }
     std::filesystem::create_directory(in("folder"));
     refused("folder", {"depth"});
-}
-
-TEST_F(Input, empty) {
-    for (const char* name : {"empty.ply", "empty.pcd", "empty.xyz"}) {
-        put(name, "");
-        refused(name, {"empty"});
-    }
-}
-
-TEST_F(Input, truncated) {
-    put("cut.ply", ply_header("1000") + floats(3 * 999 + 2, 1.0f));
-    refused("cut.ply", {"1000"});
-    put("cut-header.ply", ply_header("1000").substr(0, 60));
-    refused("cut-header.ply");
-    put("cut.pcd", pcd_header("1000") + floats(3 * 999 + 2, 1.0f));
-    refused("cut.pcd", {"1000"});
-    put("cut-header.pcd", pcd_header("1000").substr(0, 60));
-    refused("cut-header.pcd");
-}
-
-TEST_F(Input, wrong_magic) {
-    put("image.ply", "\x89PNG\r\n\x1a\n and more");
-    refused("image.ply", {"ply"});
-    put("image.pcd", std::string("\x89PNG\r\n\x1a\n\0\1\2", 11));
-    refused("image.pcd");
-    put("image.xyz", std::string("\x89PNG\r\n\x1a\n\0\1\2", 11));
-    refused("image.xyz");
-}
-
-TEST_F(Input, a_header_that_promises_a_million_million_points) {
-    put("huge.ply", ply_header("1000000000000") + floats(3, 1.0f));
-    refused("huge.ply", {"1000000000000"});
-    put("huge.pcd", pcd_header("1000000000000") + floats(3, 1.0f));
-    refused("huge.pcd");
-    put("overflow.ply", ply_header("99999999999999999999999") + floats(3, 1.0f));
-    refused("overflow.ply");
-}
-
-TEST_F(Input, no_finite_point) {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    put("nan.ply", ply_header("100") + floats(300, nan));
-    refused("nan.ply", {"finite"});
-    put("inf.pcd", pcd_header("100") + floats(300, std::numeric_limits<float>::infinity()));
-    refused("inf.pcd", {"finite"});
-}
-
-// Said before the first stage: a path may be mistyped.
-TEST_F(Input, missing_is_told_before_the_parse_begins) {
-    expect_failure(1, {"parse", "missing.ply", "-o", "out"}, {"missing.ply", "No such file"});
-    expect_failure(1, {"parse", "folder/", "-o", "out"}, {"folder/", "No such file"});
-}
-
-TEST_F(Input, words_instead_of_numbers) {
-    put("words.xyz", "a b c\na b c\n");
-    refused("words.xyz", {"line 2: \"a\" is not a number", "expected x y z"});
-    put("words.xyz", "# no numbers\na b c\n");
-    refused("words.xyz", {"line 2: \"a\" is not a number", "x y z"});
-}
-
-TEST_F(Input, hardly_any_point) {
-    put("none.xyz", "# x y z\n");
-    refused("none.xyz", {"has no points"});
-    put("one.xyz", "1 2 3\n");
-    refused("one.xyz", {"1 point was found", "takes 8"});
-    put("two.xyz", "1 2 3\n1.5 2 3\n");
-    refused("two.xyz", {"2 points were found", "takes 8"});
-    put("far.xyz", "0 0 0\n100000 0 0\n");
-    refused("far.xyz", {"2 points"});
-}
-
-TEST_F(Input, the_same_point_over_and_over) {
-    put("same.ply", ply_header("5000") + floats(15000, 0.7f));
-    refused("same.ply", {"5000 points", "no surface", "8 voxels"});
+    // Not quiet: said before the first stage, for a path may be mistyped.
+    fails(1, "parse missing.ply -o out", {"missing.ply", "No such file"});
+    fails(1, "parse missing/ -o out", {"missing/", "No such file"});
 }
 
 // A box of 4 x 3 x 2.5 m in steps of 5 cm: floor and walls, in the unit given.
@@ -164,20 +93,15 @@ std::string room_in(double unit_m) {
 }
 
 TEST_F(Input, in_another_unit_than_metres) {
-    const std::vector<std::pair<std::string, double>> units{
-        {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}};
-    for (const auto& [unit, unit_m] : units) {
+    for (const auto& [unit, unit_m] :
+         {std::pair<std::string, double>("mm", 0.001), {"in", 0.0254}}) {
         put("room.xyz", room_in(unit_m));
         const std::vector<std::string> told{"extend over", "apart", "--unit " + unit};
         refused("room.xyz", told);
-        expect_failure(1, {"estimate", "room.xyz", "--quiet"}, told);
-        std::filesystem::remove_all(in("out"));
-        const Finished done = run(
-            {"parse", "room.xyz", "-o", "out", "--quiet", "--unit", unit, "--disturbance", "wind"});
-        EXPECT_EQ(done.code, 0) << done.err;
+        fails(1, "estimate room.xyz --quiet", told);
+        succeeds("parse room.xyz -o out --quiet --disturbance wind --unit " + unit);
         // Metres again.
         const auto scene = nlohmann::json::parse(bytes_of_file(in("out/scene.json")));
-        ASSERT_FALSE(scene.at("primitives").empty());
         double farthest = 0;
         for (const auto& p : scene.at("primitives"))
             farthest = std::max(farthest, p.at("center_of_mass_m").at(0).get<double>());
@@ -186,75 +110,112 @@ TEST_F(Input, in_another_unit_than_metres) {
         std::filesystem::remove_all(in("out"));
     }
     put("room.xyz", room_in(1));
-    const Finished tiny = run({"parse", "room.xyz", "-o", "out", "--unit", "cm"});
-    EXPECT_THAT(tiny.out, HasSubstr("Note: It all extends over 0.032 m: check --unit.\n"))
-        << tiny.err;
-    std::filesystem::remove_all(in("out"));
+    EXPECT_THAT(topple("parse room.xyz -o out --unit cm").out,
+                HasSubstr("Note: It all extends over 0.032 m: check --unit.\n"));
     put_sequence("frames", 2);
-    expect_failure(2, {"parse", "frames", "-o", "out", "--quiet", "--unit", "mm"},
-                   {"--unit", "depth_scale"});
+    fails(2, "parse frames -o other --quiet --unit mm", {"--unit", "depth_scale"});
 }
 
+// One primitive, one object, and nothing that it could rest on.
 TEST_F(Input, one_plane_only) {
     put_plane("plane.xyz");
-    parsed("plane.xyz");
-    // One primitive, one object, and nothing that it could rest on.
-    const auto scene = bytes_of_file(in("out/scene.json"));
-    const auto count = [&](const std::string& word) {
-        std::size_t n = 0;
-        for (auto at = scene.find(word); at != std::string::npos; at = scene.find(word, at + 1))
-            ++n;
-        return n;
-    };
-    EXPECT_EQ(count("\"model\":"), 1u);
-    EXPECT_EQ(count("\"grounded\":"), 1u);
-    EXPECT_EQ(count("\"supporter\":"), 0u);
+    EXPECT_EQ(succeeds("parse plane.xyz -o out --quiet").out, "");
+    const auto scene = nlohmann::json::parse(bytes_of_file(in("out/scene.json")));
+    EXPECT_EQ(scene.at("primitives").size(), 1u);
+    EXPECT_EQ(scene.at("objects").size(), 1u);
+    EXPECT_TRUE(scene.at("supports").empty());
 }
 
-TEST_F(Input, a_sequence_with_a_damaged_frame) {
+TEST_F(Input, sequences_that_are_damaged) {
     put_sequence("scan", 4);
+    for (const std::string scale : {"1", "1e6"}) {
+        auto intrinsics = nlohmann::json::parse(bytes_of_file(in("scan/intrinsics.json")));
+        intrinsics["depth_scale"] = std::stod(scale);
+        put("scan/intrinsics.json", intrinsics.dump());
+        refused("scan", {"depth_scale of intrinsics.json", scale == "1" ? "1, the" : "1e+06"});
+    }
     const auto image = depth_image("scan", 2);
     std::ofstream(image, std::ios::binary) << "no image";
     refused("scan", {image.filename().string()});
     std::filesystem::remove(image);
     refused("scan", {"trajectory.txt", "3"});
-}
-
-TEST_F(Input, a_sequence_whose_depth_scale_is_wrong) {
-    for (const std::string scale : {"1", "1e6"}) {
-        put_sequence("frames", 2);
-        auto intrinsics = nlohmann::json::parse(bytes_of_file(in("frames/intrinsics.json")));
-        intrinsics["depth_scale"] = std::stod(scale);
-        put("frames/intrinsics.json", intrinsics.dump());
-        refused("frames", {"depth_scale of intrinsics.json", scale == "1" ? "1, the" : "1e+06"});
-    }
-}
-
-TEST_F(Input, a_sequence_without_intrinsics) {
-    put_sequence("scan", 2);
+    std::filesystem::remove(in("scan/trajectory.txt"));
+    refused("scan", {"trajectory.txt"});
     put("scan/intrinsics.json", "{\"width\": 80,\n \"height\" 60}");
-    const Finished damaged = run({"parse", "scan", "-o", "out", "--quiet"});
-    EXPECT_THAT(damaged.err, HasSubstr("intrinsics.json: is no JSON: line 2, column 12: "));
-    EXPECT_THAT(damaged.err, Not(HasSubstr("json.exception")));
+    refused("scan", {"intrinsics.json: is no JSON: line 2, column 12: "});
+    EXPECT_THAT(topple("parse scan -o out").err, Not(HasSubstr("json.exception")));
     std::filesystem::remove(in("scan/intrinsics.json"));
     refused("scan", {"intrinsics.json"});
 }
 
-TEST_F(Input, a_sequence_without_trajectory) {
-    put_sequence("scan", 2);
-    std::filesystem::remove(in("scan/trajectory.txt"));
-    refused("scan", {"trajectory.txt"});
-}
-
 TEST_F(Input, a_scan_that_needs_too_much_memory) {
     put_plane("plane.xyz");
-    expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--quiet", "--max-memory", "1K"},
-                   {"need", "the 1 KiB of --max-memory"});
-    expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--quiet", "--max-memory", "1MB"},
-                   {"need", "the 977 KiB of --max-memory"});
-    expect_failure(
-        1, {"parse", "plane.xyz", "-o", "out", "--quiet", "--tile", "5", "--max-memory", "1"},
-        {"need", "MiB, more than the 1 B of --max-memory"});
+    for (const auto& [limit, told] : {std::pair<std::string, const char*>("1K", "the 1 KiB of"),
+                                      {"1MB", "the 977 KiB of"},
+                                      {"1 --tile 5", "MiB, more than the 1 B of"}})
+        fails(1, "parse plane.xyz -o out --quiet --max-memory " + limit,
+              {"need", told, "--max-memory"});
+}
+
+// What the program leaves to processes of its own: foreign formats and drivers.
+
+class Readers : public Program {
+  protected:
+    ~Readers() override {
+        unsetenv("OCL_ICD_VENDORS");
+        unsetenv("TOPPLE_READERS");
+    }
+};
+
+TEST_F(Readers, a_driver_that_ends_whoever_loads_it_is_not_usable) {
+    put("drivers/aborting.icd", TOPPLE_ABORTING_DRIVER "\n");
+    setenv("OCL_ICD_VENDORS", in("drivers").c_str(), 1);
+    const Finished listed = succeeds("devices");
+    EXPECT_THAT(listed.out, HasSubstr("native"));
+    EXPECT_THAT(listed.out, HasSubstr("not usable: its driver crashed (Aborted)"));
+    put("box.obj", box_obj());
+    fails(3, "estimate box.obj --backend opencl", {"crashed (Aborted)"});
+    succeeds("estimate box.obj --backend auto --quiet");
+}
+
+TEST_F(Readers, that_of_points_does_not_load_openvdb) {
+    const auto beside = std::filesystem::path(TOPPLE_PROGRAM).parent_path();
+    const auto loads = [&](const char* reader) {
+        return bytes_of_file(beside / reader).find("libopenvdb.so") != std::string::npos;
+    };
+    EXPECT_TRUE(loads("topple-volume-reader"));
+    EXPECT_FALSE(loads("topple-reader"));
+}
+
+TEST_F(Readers, without_them_it_says_what_to_do) {
+    put("box.obj", box_obj());
+    put("empty/x", "x");
+    setenv("TOPPLE_READERS", in("empty").c_str(), 1);
+    fails(2, "estimate box.obj --backend native --quiet", {"TOPPLE_READERS", "topple-reader"});
+    succeeds("estimate box.obj --backend native --quiet --no-isolate");
+}
+
+TEST_F(Readers, hostile_meshes_are_refused_in_a_line) {
+    const std::string head = R"({"asset": {"version": "2.0"}, "nodes": [)";
+    const struct {
+        std::string nodes, message;
+    } cases[] = {
+        {R"({"children": [1, 1]}, {})", "twice"},
+        {R"({"children": [1]}, {"children": [0]})", "cycle"},
+        {R"({"children": [0]})", "cycle"},
+        {R"({"children": [5]})", "no node"},
+    };
+    for (const auto& c : cases) {
+        put("a.gltf", head + c.nodes + "]}");
+        for (const char* command : {"estimate", "parse"})
+            expect_failure(1, {command, "a.gltf", "--backend", "native", "--quiet"},
+                           {"a.gltf", c.message});
+    }
+    for (const char* uri : {"../a.bin", "/etc/hostname", "%2e%2e/a.bin", "file:///etc/hostname"}) {
+        put("a.gltf", R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 1, "uri": ")" +
+                          std::string(uri) + "\"}]}");
+        fails(1, "parse a.gltf --quiet", {"a.gltf", "folder"});
+    }
 }
 
 }  // namespace

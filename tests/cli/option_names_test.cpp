@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "topple/option_names.h"
 
-#include <algorithm>
 #include <regex>
 
 #include "program.h"
@@ -88,7 +87,7 @@ TEST(OptionNames, HoldAllOptions) {
 class NamesOfInterfaces : public Program {};
 
 TEST_F(NamesOfInterfaces, AreTheirOwn) {
-    const std::string help = run({"parse", "--help-all"}).out;
+    const std::string help = topple("parse --help-all").out;
     const std::filesystem::path include = source / "host/include/topple";
     const std::string c = without_comments(bytes_of_file(include / "topple.h"));
     const std::string fields = body_of("topple.h", "topple_options");

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <sys/resource.h>
 
-#include <cstdio>
-#include <sstream>
-
 #include "cli/program.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
@@ -29,10 +26,10 @@ const std::set<std::string> whole_output{"out",
 TEST_F(Output, refused_before_the_parse) {
     put_plane("plane.xyz");
     put("file", "mine");
-    expect_failure(1, {"parse", "plane.xyz", "-o", "file/out"}, {"file"});
-    expect_failure(1, {"parse", "plane.xyz", "-o", "file"}, {"file", "no folder"});
+    fails(1, "parse plane.xyz -o file/out", {"file"});
+    fails(1, "parse plane.xyz -o file", {"file", "no folder"});
     put("mine/notes.txt", "mine");
-    expect_failure(1, {"parse", "plane.xyz", "-o", "mine"}, {"mine", "notes.txt"});
+    fails(1, "parse plane.xyz -o mine", {"mine", "notes.txt"});
     expect_failure(2, {"parse", "plane.xyz", "-o", ""}, {"--output", "empty"});
     EXPECT_EQ(bytes_of_file(in("mine/notes.txt")), "mine");
     EXPECT_EQ(bytes_of_file(in("file")), "mine");
@@ -41,7 +38,7 @@ TEST_F(Output, refused_before_the_parse) {
 // The input would be gone with the earlier output.
 TEST_F(Output, never_in_the_place_of_the_input) {
     put_plane("plane.xyz");
-    ASSERT_EQ(run({"parse", "plane.xyz", "-o", "out", "--quiet"}).code, 0);
+    succeeds("parse plane.xyz -o out --quiet");
     const std::string points = bytes_of_file(in("out/points.ply"));
     std::filesystem::create_symlink("out/points.ply", in("link.ply"));
     for (const char* input : {"out/points.ply", "./out/../out/points.ply", "link.ply", "out"})
@@ -57,8 +54,8 @@ TEST_F(Output, beyond_the_limit_of_a_file) {
     for (const rlim_t bytes : {1000u, 100'000u, 300'000u}) {
         const rlimit limit{bytes, before.rlim_max};
         ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
-        expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--quiet"},
-                       {".topple-", "can't be written: File too large"});
+        fails(1, "parse plane.xyz -o out --quiet",
+              {".topple-", "can't be written: File too large"});
         ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
     }
 }
@@ -98,13 +95,12 @@ TEST_F(Output, a_folder_that_may_not_be_written) {
     std::filesystem::create_directory(in("locked"));
     std::filesystem::permissions(
         in("locked"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-    expect_failure(1, {"parse", "plane.xyz", "-o", "locked/out"}, {"locked"});
+    fails(1, "parse plane.xyz -o locked/out", {"locked"});
 }
 
 TEST_F(Output, stages_then_the_summary_unless_quiet) {
     put_plane("plane.xyz");
-    const Finished loud = run({"parse", "plane.xyz", "-o", "out"});
-    EXPECT_EQ(loud.code, 0) << loud.err;
+    const Finished loud = succeeds("parse plane.xyz -o out");
     // What each stage does, and its seconds.
     EXPECT_TRUE(loud.err.starts_with("ingest: reading the scan ... ")) << loud.err;
     EXPECT_THAT(loud.err, HasSubstr("\noutput: writing the files ... "));
@@ -121,8 +117,7 @@ TEST_F(Output, stages_then_the_summary_unless_quiet) {
     EXPECT_THAT(loud.out, HasSubstr("out/report.html"));
     EXPECT_EQ(everything(), whole_output);
 
-    const Finished quiet = run({"parse", "plane.xyz", "-o", "out", "--quiet"});
-    EXPECT_EQ(quiet.code, 0);
+    const Finished quiet = succeeds("parse plane.xyz -o out --quiet");
     EXPECT_EQ(quiet.out, "");
     EXPECT_EQ(quiet.err, "");
     EXPECT_EQ(everything(), whole_output);
@@ -132,8 +127,7 @@ TEST_F(Output, stages_then_the_summary_unless_quiet) {
 TEST_F(Output, the_report_knows_the_command_and_the_notes_of_the_scan) {
     put_plane("plane.xyz");
     put("plane.xyz.topple-notes.txt", "The phone's poses drift.\n");
-    const Finished loud = run({"parse", "plane.xyz", "-o", "out", "--voxel", "0.05"});
-    EXPECT_EQ(loud.code, 0) << loud.err;
+    const Finished loud = succeeds("parse plane.xyz -o out --voxel 0.05");
     EXPECT_THAT(loud.out, HasSubstr("\nNote: The phone's poses drift.\n"));
     const std::string report = bytes_of_file(in("out/report.html"));
     EXPECT_NE(report.find(R"(","parse","plane.xyz","-o","out","--voxel","0.05"])"),
@@ -144,13 +138,13 @@ TEST_F(Output, the_report_knows_the_command_and_the_notes_of_the_scan) {
 
 TEST_F(Output, pictures_where_they_are_asked_for) {
     put_plane("plane.xyz");
-    EXPECT_EQ(run({"parse", "plane.xyz", "-o", "out", "--png", "--quiet"}).code, 0);
+    succeeds("parse plane.xyz -o out --png --quiet");
     for (const char* name : {"out/view-objects.png", "out/view-risk.png"}) {
         EXPECT_TRUE(everything().contains(name)) << name;
         EXPECT_TRUE(bytes_of_file(in(name)).starts_with("\x89PNG")) << name;
     }
     // A later run without them replaces the folder as a whole.
-    EXPECT_EQ(run({"parse", "plane.xyz", "-o", "out", "--quiet"}).code, 0);
+    succeeds("parse plane.xyz -o out --quiet");
     EXPECT_EQ(everything(), whole_output);
 }
 
@@ -162,9 +156,9 @@ TEST_F(Output, is_named_after_the_input_where_no_name_is_given) {
 
 TEST_F(Output, an_earlier_one_outlives_a_failure) {
     put_plane("plane.xyz");
-    EXPECT_EQ(run({"parse", "plane.xyz", "-o", "out", "--quiet"}).code, 0);
+    succeeds("parse plane.xyz -o out --quiet");
     const auto earlier = bytes_of_file(in("out/scene.json"));
-    expect_failure(1, {"parse", "missing.xyz", "-o", "out", "--quiet"}, {"missing.xyz"});
+    fails(1, "parse missing.xyz -o out --quiet", {"missing.xyz"});
     EXPECT_EQ(bytes_of_file(in("out/scene.json")), earlier);
 }
 
@@ -181,12 +175,12 @@ TEST_P(Interrupted, leaves_nothing) {
     const auto [stage, expected] = GetParam();
     std::chrono::steady_clock::time_point sent;
     const Finished finished =
-        run({"parse", "scan", "-o", "made/for/out", "--backend", "native"},
-            [&, name = std::string(stage) + ": ", number = expected](const std::string& err) {
-                if (err.find(name) == std::string::npos) return 0;
-                sent = std::chrono::steady_clock::now();
-                return number;
-            });
+        topple("parse scan -o made/for/out --backend native",
+               [&, name = std::string(stage) + ": ", number = expected](const std::string& err) {
+                   if (err.find(name) == std::string::npos) return 0;
+                   sent = std::chrono::steady_clock::now();
+                   return number;
+               });
     EXPECT_EQ(finished.code, 128 + expected) << finished.err;
     EXPECT_TRUE(finished.err.ends_with("topple: interrupted; nothing was written\n"))
         << finished.err;

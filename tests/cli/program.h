@@ -2,18 +2,12 @@
 #pragma once
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <functional>
-#include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "host/io/files.h"
 
@@ -39,9 +33,8 @@ class Program : public Files {
     // Everything below the program's folder, hidden or not.
     std::set<std::string> everything() const {
         std::set<std::string> names;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(path("work"))) {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path("work")))
             names.insert(std::filesystem::relative(entry.path(), path("work")).string());
-        }
         return names;
     }
 
@@ -78,13 +71,25 @@ class Program : public Files {
         return finished;
     }
 
+    // The same with a line of words that hold no spaces.
+    Finished topple(const std::string& line,
+                    const std::function<int(const std::string&)>& interrupt = {}) const {
+        return run(words_of(line), interrupt);
+    }
+    Finished succeeds(const std::string& line) const {
+        Finished done = topple(line);
+        EXPECT_EQ(done.code, 0) << line << "\n" << done.err;
+        return done;
+    }
+
     // Runs it where it must fail: with this exit code, with one line on stderr that holds `parts`,
     // with nothing on stdout, and with no file made or removed.
+    void fails(int code, const std::string& line, const std::vector<std::string>& parts) const {
+        expect_failure(code, words_of(line), parts);
+    }
     void expect_failure(int code, const std::vector<std::string>& arguments,
                         const std::vector<std::string>& parts) const {
-        std::string line = "topple";
-        for (const auto& word : arguments) line += " " + word;
-        SCOPED_TRACE(line);
+        SCOPED_TRACE(::testing::PrintToString(arguments));
         const auto before = everything();
         const Finished finished = run(arguments);
         EXPECT_EQ(finished.code, code);
@@ -92,9 +97,7 @@ class Program : public Files {
         EXPECT_TRUE(finished.err.starts_with("topple: ")) << finished.err;
         EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
         EXPECT_TRUE(finished.err.ends_with("\n")) << finished.err;
-        for (const auto& part : parts) {
-            EXPECT_THAT(finished.err, HasSubstr(part));
-        }
+        for (const auto& part : parts) EXPECT_THAT(finished.err, HasSubstr(part));
         EXPECT_EQ(everything(), before);
     }
 
@@ -113,6 +116,10 @@ class Program : public Files {
     }
 
   private:
+    static std::vector<std::string> words_of(const std::string& line) {
+        std::istringstream words(line);
+        return {std::istream_iterator<std::string>(words), {}};
+    }
     static int wait_for(pid_t pid, const std::filesystem::path& err,
                         const std::function<int(const std::string&)>& interrupt, bool& late) {
         const auto start = std::chrono::steady_clock::now();

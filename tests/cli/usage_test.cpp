@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <map>
-
 #include "cli/program.h"
 
 // What can be told from the command line alone, without looking into the input.
@@ -11,51 +8,48 @@ namespace {
 using Usage = Program;
 
 TEST_F(Usage, says_what_is_missing_or_unknown) {
-    expect_failure(2, {}, {"subcommand", "--help"});
-    expect_failure(2, {"prase", "x"},
-                   {"unknown subcommand \"prase\"; did you mean parse?", "--help"});
-    expect_failure(2, {"kaleidoscope"}, {"unknown subcommand", "there are parse, estimate"});
-    expect_failure(2, {"parse"}, {"INPUT"});
+    fails(2, "", {"subcommand", "--help"});
+    fails(2, "prase x", {"unknown subcommand \"prase\"; did you mean parse?", "--help"});
+    fails(2, "kaleidoscope", {"unknown subcommand", "there are parse, estimate"});
+    fails(2, "parse", {"INPUT"});
     put_plane("plane.xyz");
-    expect_failure(2, {"parse", "plane.xyz", "--colour"}, {"--colour"});
-    expect_failure(2, {"parse", "plane.xyz", "more.xyz"}, {"more.xyz"});
-    expect_failure(2, {"parse", "plane.xyz", "-o"}, {"--output"});
+    fails(2, "parse plane.xyz --colour", {"--colour"});
+    fails(2, "parse plane.xyz more.xyz", {"more.xyz"});
+    fails(2, "parse plane.xyz -o", {"--output"});
 }
 
 // What follows an unknown option is taken for an argument; the option is what is wrong.
 TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
     put_plane("plane.xyz");
-    expect_failure(2, {"parse", "--wnd", "3", "plane.xyz"}, {"--wnd", "did you mean --wind?"});
-    expect_failure(2, {"parse", "plane.xyz", "--densty=3"}, {"--densty;", "--density?"});
-    expect_failure(2, {"--verison"}, {"--verison", "--version?"});
-    expect_failure(2, {"parse", "plane.xyz", "--unit", "feet"},
-                   {"--unit feet: expected m, cm, mm, in or ft"});
-    expect_failure(2, {"generate", "room", "--kind", "office", "--scan", "glass"},
-                   {"--scan glass: expected walk, sparse, cloud, laser or single"});
-    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "people"},
-                   {"--disturbance people: expected human", "for people say human"});
-    expect_failure(2, {"parse", "plane.xyz", "--motion", "a.bvh", "--motion-unit", "0"},
-                   {"--motion-unit 0: expected a number above 0"});
-    expect_failure(2, {"parse", "plane.xyz", "--threads", "100000"}, {"--threads 100000: at most"});
-    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "human,wind,human"},
-                   {"--disturbance: human is given twice"});
+    fails(2, "parse --wnd 3 plane.xyz", {"--wnd", "did you mean --wind?"});
+    fails(2, "parse plane.xyz --densty=3", {"--densty;", "--density?"});
+    fails(2, "--verison", {"--verison", "--version?"});
+    fails(2, "parse plane.xyz --unit feet", {"--unit feet: expected m, cm, mm, in or ft"});
+    fails(2, "generate room --kind office --scan glass",
+          {"--scan glass: expected walk, sparse, cloud, laser or single"});
+    fails(2, "parse plane.xyz --disturbance people",
+          {"--disturbance people: expected human", "for people say human"});
+    fails(2, "parse plane.xyz --motion a.bvh --motion-unit 0",
+          {"--motion-unit 0: expected a number above 0"});
+    fails(2, "parse plane.xyz --threads 100000", {"--threads 100000: at most"});
+    fails(2, "parse plane.xyz --disturbance human,wind,human",
+          {"--disturbance: human is given twice"});
     // Nothing is near this one.
-    const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
+    const Finished far = topple("parse plane.xyz --kaleidoscope");
     EXPECT_THAT(far.err, Not(HasSubstr("did you mean")));
     EXPECT_THAT(far.err, HasSubstr("--kaleidoscope"));
 }
 
 TEST_F(Usage, says_how_to_write_what_has_a_space_in_it) {
     put_plane("plane.xyz");
-    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "human,", "earthquake"},
-                   {"earthquake", "write the list without spaces: human,earthquake"});
-    expect_failure(2, {"parse", "--disturbance", "human", ",wind,", "earthquake", "plane.xyz"},
-                   {"write the list without spaces: human,wind,earthquake"});
-    expect_failure(2, {"parse", "plane.xyz", "--pga", "0.3", "g"},
-                   {"write it without the space: 0.3g"});
-    expect_failure(2, {"parse", "plane.xyz", "--title", "Room", "12", "--voxel", "0.03"},
-                   {"12", "put a title of several words in quotes, as in \"Room 12\""});
-    const Finished other = run({"parse", "plane.xyz", "--voxel", "0.03", "more.xyz"});
+    fails(2, "parse plane.xyz --disturbance human, earthquake",
+          {"earthquake", "write the list without spaces: human,earthquake"});
+    fails(2, "parse --disturbance human ,wind, earthquake plane.xyz",
+          {"write the list without spaces: human,wind,earthquake"});
+    fails(2, "parse plane.xyz --pga 0.3 g", {"write it without the space: 0.3g"});
+    fails(2, "parse plane.xyz --title Room 12 --voxel 0.03",
+          {"12", "put a title of several words in quotes, as in \"Room 12\""});
+    const Finished other = topple("parse plane.xyz --voxel 0.03 more.xyz");
     EXPECT_THAT(other.err, Not(HasSubstr("without")));
 }
 
@@ -85,22 +79,20 @@ TEST_F(Usage, refuses_values_before_it_parses) {
         for (const std::string& value : values)
             // The value as it was given, or for numbers as it was understood.
             expect_failure(2, {"parse", "plane.xyz", option, value}, {option});
-    expect_failure(2, {"parse", "plane.xyz", "--voxel", "-1"}, {"-1"});
-    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "flood"}, {"flood", "earthquake"});
-    expect_failure(2, {"parse", "plane.xyz", "--backend", "cuda"},
-                   {"--backend cuda is unknown", "vulkan"});
+    fails(2, "parse plane.xyz --voxel -1", {"-1"});
+    fails(2, "parse plane.xyz --disturbance flood", {"flood", "earthquake"});
+    fails(2, "parse plane.xyz --backend cuda", {"--backend cuda is unknown", "vulkan"});
     // Wrong usage counts before a backend that may be missing.
-    expect_failure(2, {"parse", "plane.xyz", "--backend", "opencl", "--voxel", "0"}, {"--voxel"});
-    expect_failure(2, {"generate", "scan", "--frames", "0"}, {"--frames"});
-    expect_failure(2, {"generate", "scan", "--seed", "-1"}, {"--seed"});
-    expect_failure(2, {"generate", "scan", "--building"}, {"scan", ".ply"});
-    expect_failure(2, {"generate", "b.ply", "--building", "--tilt", "5"}, {"--tilt"});
-    expect_failure(2, {"generate", "b.ply", "--points", "1000"}, {"--points", "--building"});
-    expect_failure(2, {"generate", "b.ply", "--building", "--points", "0"}, {"--points 0"});
-    expect_failure(2, {"generate", "b.ply", "--building", "--spacing", "9"}, {"--spacing 9"});
+    fails(2, "parse plane.xyz --backend opencl --voxel 0", {"--voxel"});
+    fails(2, "generate scan --frames 0", {"--frames"});
+    fails(2, "generate scan --seed -1", {"--seed"});
+    fails(2, "generate scan --building", {"scan", ".ply"});
+    fails(2, "generate b.ply --building --tilt 5", {"--tilt"});
+    fails(2, "generate b.ply --points 1000", {"--points", "--building"});
+    fails(2, "generate b.ply --building --points 0", {"--points 0"});
+    fails(2, "generate b.ply --building --spacing 9", {"--spacing 9"});
 }
 
-// It is read before the scan is.
 // One line, whatever names and values hold.
 TEST_F(Usage, control_characters_are_told_as_such) {
     expect_failure(1, {"parse", "a\nb\033[31m.ply"}, {"a\\x0ab\\x1b[31m.ply"});
@@ -110,26 +102,25 @@ TEST_F(Usage, control_characters_are_told_as_such) {
     expect_failure(2, {"par\nse"}, {"par\\x0ase"});
 }
 
+// It is read before the scan is.
 TEST_F(Usage, a_bad_accelerogram_is_refused_before_the_parse) {
     put_plane("plane.xyz");
-    expect_failure(1, {"parse", "plane.xyz", "--accelerogram", "none.json"}, {"none.json"});
+    fails(1, "parse plane.xyz --accelerogram none.json", {"none.json"});
     put("quake.txt", "0 313\n0.02 0\n");
-    expect_failure(1, {"parse", "plane.xyz", "--accelerogram", "quake.txt"},
-                   {"quake.txt", "313 g", "--accelerogram-unit"});
+    fails(1, "parse plane.xyz --accelerogram quake.txt",
+          {"quake.txt", "313 g", "--accelerogram-unit"});
     put("along.txt", "0 0.1\n0.02 0\n");
     put("up.txt", "0 0.1\n0.01 0\n");
-    expect_failure(
-        1, {"parse", "plane.xyz", "--accelerogram", "along.txt", "--accelerogram-up", "up.txt"},
-        {"up.txt", "0.01", "0.02", "one record"});
-    expect_failure(2, {"parse", "plane.xyz", "--accelerogram-across", "along.txt"},
-                   {"--accelerogram"});
+    fails(1, "parse plane.xyz --accelerogram along.txt --accelerogram-up up.txt",
+          {"up.txt", "0.01", "0.02", "one record"});
+    fails(2, "parse plane.xyz --accelerogram-across along.txt", {"--accelerogram"});
 }
 
 TEST_F(Usage, a_bad_hazard_curve_is_refused_before_the_parse) {
     put_plane("plane.xyz");
-    expect_failure(1, {"parse", "plane.xyz", "--hazard", "none.txt"}, {"none.txt"});
+    fails(1, "parse plane.xyz --hazard none.txt", {"none.txt"});
     put("hazard.txt", "0.2 0.01\n0.1 0.02\n");
-    expect_failure(1, {"parse", "plane.xyz", "--hazard", "hazard.txt"}, {"hazard.txt", "rise"});
+    fails(1, "parse plane.xyz --hazard hazard.txt", {"hazard.txt", "rise"});
 }
 
 TEST_F(Usage, help_names_every_command_and_option) {
@@ -162,15 +153,14 @@ TEST_F(Usage, help_fits_a_screen) {
         EXPECT_LE(std::ranges::count(help.out, '\n'), 50) << help.out;
         EXPECT_THAT(help.out, HasSubstr("--help-all"));
     }
-    const Finished all = run({"--help"});
+    const Finished all = topple("--help");
     EXPECT_LE(std::ranges::count(all.out, '\n'), 30) << all.out;
     for (const char* word : {"parse", "generate", "devices", "--help-all", "--version", "130"})
         EXPECT_THAT(all.out, HasSubstr(word));
 }
 
 TEST_F(Usage, version) {
-    const Finished finished = run({"--version"});
-    EXPECT_EQ(finished.code, 0);
+    const Finished finished = succeeds("--version");
     EXPECT_EQ(finished.err, "");
     EXPECT_TRUE(finished.out.starts_with("topple ")) << finished.out;
     EXPECT_EQ(std::count(finished.out.begin(), finished.out.end(), '.'), 2) << finished.out;
@@ -178,11 +168,9 @@ TEST_F(Usage, version) {
 
 // Every backend has a line, usable or not.
 TEST_F(Usage, devices_of_all_three_backends) {
-    const Finished finished = run({"devices"});
-    EXPECT_EQ(finished.code, 0) << finished.err;
-    for (const std::string backend : {"native", "opencl", "vulkan"}) {
+    const Finished finished = succeeds("devices");
+    for (const std::string backend : {"native", "opencl", "vulkan"})
         EXPECT_THAT("\n" + finished.out, HasSubstr("\n" + backend + " "));
-    }
     EXPECT_THAT(finished.out, HasSubstr("driver"));
     EXPECT_TRUE(everything().empty());
 }

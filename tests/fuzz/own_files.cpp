@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fuzz/own_files.h"
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "core/checksum.h"
 #include "device/devices.h"
 #include "export/sim_scene.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <span>
-
 #include "fuzz/readers.h"
 
 namespace topple::fuzz {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fuzz/readers.h"
 
-#include <cmath>
-#include <fstream>
-#include <iterator>
 #include <new>
 
 #include "fuzz/own_files.h"

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <string_view>
-#include <vector>
+#include "standard.h"
 
 // The readers of files, by what they are fed with.
 namespace topple::fuzz {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <vector>
-
 #include "fuzz/readers.h"
+#include "host/io/files.h"
 #include "lab/temporary_folder.h"
 
 namespace topple::fuzz {
@@ -26,9 +20,7 @@ TEST_P(Corpus, is_read_or_refused) {
     ASSERT_FALSE(inputs.empty());
     const scenes::TemporaryFolder folder("topple_replay");
     for (const fs::path& input : inputs) {
-        std::ostringstream bytes;
-        bytes << std::ifstream(input, std::ios::binary).rdbuf();
-        EXPECT_EQ(try_input(reader, folder.path(), bytes.view()), "") << input;
+        EXPECT_EQ(try_input(reader, folder.path(), test::bytes_of_file(input)), "") << input;
     }
 }
 

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "device/buffer.h"
 #include "oracle/carve_oracle.h"
 #include "oracle/random_depth.h"

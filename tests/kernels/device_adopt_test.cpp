@@ -20,9 +20,8 @@ namespace {
 void use(device::Device& device) {
     const std::vector<float> a{1, 2, 3}, b{10, 20, 30};
     const device::Buffer<float> in_a(device, a, "a"), in_b(device, b, "b"), out(device, 3, "dst");
-    device::Queue queue(device);
-    queue.add<kernels::Triad>(3, {.a = in_a, .b = in_b, .dst = out}, {.count = 3, .scale = 2});
-    queue.run();
+    run_kernel<kernels::Triad>(device, 3, {.a = in_a, .b = in_b, .dst = out},
+                               {.count = 3, .scale = 2});
     EXPECT_EQ(out.download(), (std::vector<float>{21, 42, 63}));
 }
 
@@ -37,10 +36,9 @@ void use_buffers(device::Device& device, void* a, void* b, void* dst) {
     const auto part = [](const std::unique_ptr<device::Memory>& memory, std::uint64_t from) {
         return device::Slice<float>{{memory.get(), from, 12}};
     };
-    device::Queue queue(device);
-    queue.add<kernels::Triad>(3, {.a = part(in_a, 0), .b = part(in_b, 0), .dst = part(out, 512)},
-                              {.count = 3, .scale = 2});
-    queue.run();
+    run_kernel<kernels::Triad>(device, 3,
+                               {.a = part(in_a, 0), .b = part(in_b, 0), .dst = part(out, 512)},
+                               {.count = 3, .scale = 2});
 }
 void expect_result(const float* dst) {
     EXPECT_EQ(std::vector<float>(dst + 128, dst + 131), (std::vector<float>{21, 42, 63}));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <numeric>
+#include <unistd.h>
 
-#include "device/buffer.h"
+#include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
+#include "triad.hpp"
 
 namespace topple::test {
 namespace {
@@ -99,6 +100,134 @@ TEST_P(DeviceBuffer, CountsBytes) {
     EXPECT_EQ(buffer.download().size(), 100u);
     EXPECT_EQ(device->counters().bytes_written, 400u);
     EXPECT_EQ(device->counters().bytes_read, 400u);
+}
+
+// Kernels that can't be built say so by name, with the driver's own words.
+
+std::string build_error(device::Device& device, const device::KernelSource& source) {
+    return message_of([&] { device.prepare(source); });
+}
+
+// OpenCL kernels are compiled at first use; the others with topple, and only set up by the driver.
+class OpenClErrors : public EachBackend {};
+INSTANTIATE_TEST_SUITE_P(Device, OpenClErrors, ::testing::Values("opencl"), backend_name);
+class VulkanErrors : public EachBackend {};
+INSTANTIATE_TEST_SUITE_P(Device, VulkanErrors, ::testing::Values("vulkan"), backend_name);
+
+TEST_P(OpenClErrors, BuildLogNamesFileAndLine) {
+    device::KernelSource broken = kernels::Triad::source();
+    broken.name = "broken";
+    broken.opencl =
+        "#line 1 \"kernels/broken.kernel\"\n"
+        "__kernel void broken(__global float* x) {\n"
+        "    x[0] = no_such_name;\n"
+        "}\n";
+    const std::string message = build_error(*device, broken);
+    EXPECT_THAT(message, HasSubstr("kernel broken does not build for " + device->info().name));
+    // NVIDIA's compiler counts lines of what it is given, whatever #line says.
+    if (!device->info().gpu) {
+        EXPECT_THAT(message, HasSubstr("broken.kernel:2"));
+    }
+    EXPECT_THAT(message, HasSubstr("no_such_name"));
+    EXPECT_EQ(device->counters().kernel_builds, 0u);
+    // The device still works.
+    EXPECT_NO_THROW(device->prepare(kernels::Triad::source()));
+}
+
+TEST_P(VulkanErrors, RefusesGroupsLargerThanTheDeviceRuns) {
+    device::KernelSource wide = kernels::Triad::source();
+    wide.name = "wide";
+    wide.group_size = device->info().limits.max_group_size + 1;
+    EXPECT_THAT(build_error(*device, wide),
+                HasSubstr("kernel wide does not build for " + device->info().name));
+}
+
+// A batch with a kernel that does not build runs none of its dispatches.
+TEST_P(OpenClErrors, ABatchThatCannotBuildRunsNothing) {
+    device::KernelSource broken = kernels::Triad::source();
+    broken.name = "broken";
+    broken.opencl = "not a kernel";
+    const device::Buffer<float> a(*device, std::vector<float>(10, 1), "a"),
+        c(*device, std::vector<float>(10, 0), "c");
+    const kernels::TriadParams params{.count = 10, .scale = 1};
+    device::Dispatch dispatch;
+    dispatch.kernel = &kernels::Triad::source();
+    dispatch.groups = 1;
+    kernels::Triad::bind({.a = a, .b = a, .dst = c}, dispatch.ranges);
+    const auto bytes = std::as_bytes(std::span(&params, 1));
+    dispatch.params.assign(bytes.begin(), bytes.end());
+    std::vector<device::Dispatch> batch{dispatch, dispatch};
+    batch[1].kernel = &broken;
+    EXPECT_THROW(device->run(batch), Error);
+    EXPECT_TRUE(same(c.download(), std::vector<float>(10, 0)));
+    batch.pop_back();
+    device->run(batch);
+    EXPECT_TRUE(same(c.download(), std::vector<float>(10, 2)));
+}
+
+// The range of one binding is limited; what is larger goes in tiles.
+TEST_P(VulkanErrors, RefusesBindingsBeyondTheLimit) {
+    const auto& limits = device->info().limits;
+    if (limits.max_binding_bytes + 4 > limits.max_allocation_bytes) {
+        GTEST_SKIP() << "what this device allocates it can bind";
+    }
+    const std::uint64_t count = limits.max_binding_bytes / 4 + 1;
+    const device::Buffer<float> large(*device, count, "large");
+    device::Queue queue(*device);
+    EXPECT_THAT(message_of([&] {
+                    queue.add<kernels::Triad>(64, {.a = large, .b = large, .dst = large},
+                                              {.count = 64, .scale = 1});
+                }),
+                HasSubstr("kernel triad: binding a spans"));
+}
+
+// tools/build_kernels.py refuses broken kernels, and names the file and the line in it.
+
+// What the tool says of a kernel with the statement on its line 6; empty where it takes it.
+std::string verdict(const std::string& statement) {
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("topple_kernel_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "sample.kernel") << "// A sample.\n"
+                                               "KERNEL(sample, 64)\n"
+                                               "    BUFFER_OUT(0, float, o)\n"
+                                               "    PARAMS(TriadParams, p)\n"
+                                               "BEGIN\n"
+                                            << statement << "\nEND\n";
+    const std::string command = std::string("python3 '") + TOPPLE_SOURCE_DIR +
+                                "/kernels/tools/build_kernels.py' '" +
+                                (folder / "sample.kernel").string() + "' '" + folder.string() +
+                                "' --glslang glslangValidator 2>&1";
+    std::string said;
+    FILE* pipe = popen(command.c_str(), "r");
+    if (!pipe) return "popen failed";
+    std::array<char, 512> piece{};
+    while (std::fgets(piece.data(), piece.size(), pipe)) said += piece.data();
+    const int status = pclose(pipe);
+    std::filesystem::remove_all(folder);
+    EXPECT_EQ(status == 0, said.empty()) << said;
+    return said;
+}
+
+TEST(DeviceTools, TakesWhatTheDialectHas) {
+    EXPECT_EQ(verdict("o[GLOBAL_ID] = 1.5f * sqrt(2.0f) + 1.0e-3f; // 0.5 and exp(1) in words"),
+              "");
+}
+
+TEST(DeviceTools, RefusesByFileAndLine) {
+    const std::array<std::array<std::string, 2>, 7> cases{{
+        {"o[0] = 0.5;", "kernels/sample.kernel:6: 0.5 is a double"},
+        {"o[0] = 1e-3;", "kernels/sample.kernel:6: 1e-3 is a double"},
+        {"o[0] = exp(1.0f);", "kernels/sample.kernel:6: exp( differs between backends"},
+        {"o[0] = fma(o[0], o[1], o[2]);", "kernels/sample.kernel:6: fma( rounds differently"},
+        {"double d = 1.0f;", "kernels/sample.kernel:6: double is not a type"},
+        {"o[0] = p.scal;", "kernels/sample.kernel:6: 'scal' : no such field"},
+        {"o[0] = nowhere;", "kernels/sample.kernel:6: 'nowhere' : undeclared identifier"},
+    }};
+    for (const auto& [statement, expected] : cases) {
+        const std::string said = verdict(statement);
+        EXPECT_NE(said.find(expected), std::string::npos) << statement << "\n" << said;
+    }
 }
 
 }  // namespace

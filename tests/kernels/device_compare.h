@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "device/buffer.h"
+#include "device/queue.h"
 #include "random.h"
+#include "testing.h"
 
-// Comparing what kernels give, element by element.
+// Running a kernel, and comparing what it gives element by element.
 namespace topple::test {
+
+template <class Kernel>
+void run_kernel(device::Device& device, std::uint64_t count, const typename Kernel::Args& args,
+                const typename Kernel::Params& params) {
+    device::Queue queue(device);
+    queue.add<Kernel>(count, args, params);
+    queue.run();
+}
 
 inline std::uint32_t bits(float v) {
     return std::bit_cast<std::uint32_t>(v);

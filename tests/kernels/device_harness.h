@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <memory>
-#include <string>
-
 #include "device/devices.h"
 #include "device/vulkan/vulkan_device.h"
 #include "errors.h"

@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
 #include "barrier_probe.hpp"
 #include "device/queue.h"
 #include "device_compare.h"
@@ -61,10 +57,8 @@ TEST_P(DeviceQueue, RunsMoreThan65535Groups) {
     }
     const device::Buffer<float> in_a(*device, a, "a"), in_b(*device, b, "b");
     const Guarded<float> out(*device, count, "dst");
-    device::Queue queue(*device);
-    queue.add<kernels::Triad>(count, {.a = in_a, .b = in_b, .dst = out.slice()},
-                              {.count = count, .scale = 3});
-    queue.run();
+    run_kernel<kernels::Triad>(*device, count, {.a = in_a, .b = in_b, .dst = out.slice()},
+                               {.count = count, .scale = 3});
     EXPECT_TRUE(same(out.download(), want));
     EXPECT_TRUE(out.untouched());
 }
@@ -82,9 +76,8 @@ TEST_P(DeviceQueue, BindsSlices) {
                                .dst = buffer.slice(3 * step, step)},
                               {.count = count, .scale = 10});
     queue.run();
-    for (std::uint64_t i = 0; i < step; ++i) {
+    for (std::uint64_t i = 0; i < step; ++i)
         data[3 * step + i] = static_cast<float>(i) + 10 * static_cast<float>(step + i);
-    }
     EXPECT_TRUE(same(buffer.download(), data));
 }
 
@@ -122,10 +115,8 @@ TEST_P(DeviceQueue, BindsEmptyArrays) {
     const std::uint64_t step = device::slice_alignment / 4;
     device::Buffer<float> buffer(*device, std::vector<float>(step, 5), "whole"),
         none(*device, 0, "none");
-    device::Queue queue(*device);
-    queue.add<kernels::Triad>(1, {.a = none, .b = buffer.slice(step, 0), .dst = buffer},
-                              {.count = 0, .scale = 1});
-    queue.run();
+    run_kernel<kernels::Triad>(*device, 1, {.a = none, .b = buffer.slice(step, 0), .dst = buffer},
+                               {.count = 0, .scale = 1});
     EXPECT_TRUE(same(buffer.download(), std::vector<float>(step, 5)));
     EXPECT_EQ(device->counters().dispatches, 1u);
 }
@@ -194,11 +185,10 @@ TEST_P(DeviceQueue, GroupsWorkTogether) {
                                                    "counts");
         const device::Buffer<std::uint32_t> extremes(
             *device, std::vector<std::uint32_t>{0xffffffffu, 0}, "extremes");
-        device::Queue queue(*device);
-        queue.add<kernels::BarrierProbe>(
-            groups, {.src = in, .sums = sums.slice(), .counts = counts, .extremes = extremes},
+        run_kernel<kernels::BarrierProbe>(
+            *device, groups,
+            {.src = in, .sums = sums.slice(), .counts = counts, .extremes = extremes},
             {.count = static_cast<std::uint32_t>(count)});
-        queue.run();
         EXPECT_TRUE(same(sums.download(), want_sums));
         EXPECT_TRUE(same(counts.download(), want_counts));
         EXPECT_TRUE(same(extremes.download(), {*low, *high}));

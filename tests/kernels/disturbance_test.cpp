@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "disturbance.hpp"
 
-#include <gtest/gtest.h>
-
 #include "core/random.h"
-#include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
 #include "disturbance_reach.hpp"
@@ -39,9 +36,8 @@ struct Case {
           band_first(first_band) {
         Random random(blocks * 7919 + rows * 31 + bands);
         grid.solid.resize(width * height);
-        for (auto& word : grid.solid) {
+        for (auto& word : grid.solid)
             word = static_cast<std::uint32_t>(random.bits() & random.bits() & random.bits());
-        }
         for (std::uint32_t b = 0; b < blocks; ++b) {
             const auto row = 10 + random.below(height - 20), column = random.below(width / 64);
             starts.push_back(static_cast<std::uint32_t>(row * width + column * 64));
@@ -94,16 +90,14 @@ std::vector<std::uint32_t> run_reach(device::Device& device, const Case& c) {
         first(device, c.row_first, "first");
     const test::Guarded<std::uint32_t> blocked(device, outputs, "blocked");
     Buffer<std::int32_t> a(device, c.step_a, "a"), b(device, c.step_b, "b");
-    device::Queue queue(device);
-    queue.add<kernels::DisturbanceReach>(outputs,
-                                         {.block_start = starts,
-                                          .solid = solid,
-                                          .row_first = first,
-                                          .step_a = a,
-                                          .step_b = b,
-                                          .blocked = blocked.slice()},
-                                         {.cell_count = c.cells(), .row_count = c.rows});
-    queue.run();
+    test::run_kernel<kernels::DisturbanceReach>(device, outputs,
+                                                {.block_start = starts,
+                                                 .solid = solid,
+                                                 .row_first = first,
+                                                 .step_a = a,
+                                                 .step_b = b,
+                                                 .blocked = blocked.slice()},
+                                                {.cell_count = c.cells(), .row_count = c.rows});
     EXPECT_TRUE(blocked.untouched());
     return blocked.download();
 }
@@ -117,25 +111,24 @@ std::vector<float> run_convolution(device::Device& device, const Case& c,
     Buffer<std::int32_t> delta(device, c.entry_delta, "delta");
     Buffer<float> primary(device, c.primary, "primary"), weight(device, c.entry_weight, "weight");
     const test::Guarded<float> density(device, outputs, "density");
-    device::Queue queue(device);
-    queue.add<kernels::Disturbance>(std::uint64_t{c.directions} * ((c.bands + 3) / 4) * c.cells(),
-                                    {.block_start = starts,
-                                     .primary = primary,
-                                     .blocked = blocked,
-                                     .entry_first = first,
-                                     .entry_delta = delta,
-                                     .entry_row = row,
-                                     .entry_weight = weight,
-                                     .density = density.slice()},
-                                    {.cell_count = c.cells(),
-                                     .row_count = c.rows,
-                                     .plane_cells = Case::width * Case::height,
-                                     .direction_count = c.directions,
-                                     .footprint_first = 0,
-                                     .band_first = c.band_first,
-                                     .band_count = c.bands,
-                                     .output_first = 0});
-    queue.run();
+    test::run_kernel<kernels::Disturbance>(
+        device, std::uint64_t{c.directions} * ((c.bands + 3) / 4) * c.cells(),
+        {.block_start = starts,
+         .primary = primary,
+         .blocked = blocked,
+         .entry_first = first,
+         .entry_delta = delta,
+         .entry_row = row,
+         .entry_weight = weight,
+         .density = density.slice()},
+        {.cell_count = c.cells(),
+         .row_count = c.rows,
+         .plane_cells = Case::width * Case::height,
+         .direction_count = c.directions,
+         .footprint_first = 0,
+         .band_first = c.band_first,
+         .band_count = c.bands,
+         .output_first = 0});
     EXPECT_TRUE(density.untouched());
     return density.download();
 }
@@ -191,9 +184,8 @@ TEST_P(DisturbanceKernels, DensityWithinItsBoundAndNativeToTheBit) {
         std::size_t at = 0, positive = 0;
         for (unsigned d = 0; d < c.directions; ++d) {
             std::vector<oracle::Entry> entries;
-            for (auto e = c.entry_first[d]; e < c.entry_first[d + 1]; ++e) {
+            for (auto e = c.entry_first[d]; e < c.entry_first[d + 1]; ++e)
                 entries.push_back({c.entry_delta[e], c.entry_row[e], c.entry_weight[e]});
-            }
             for (unsigned b = 0; b < c.bands; ++b) {
                 for (std::uint32_t cell = 0; cell < c.cells(); ++cell, ++at) {
                     const std::size_t from =

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "rocking.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-
-#include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
 #include "oracle/rocking_oracle.h"
@@ -147,23 +141,21 @@ RockingRun run_rocking(device::Device& device, const RockingCase& c) {
     const device::Buffer<std::uint32_t> on_event(device, event_body, "event_body"),
         on_block(device, block_record, "block_record"), on_first(device, first, "first");
     const Guarded<float> outcome(device, 4 * event_body.size(), "outcome");
-    device::Queue queue(device);
-    queue.add<kernels::Rocking>(event_body.size(),
-                                {.body = on_body,
-                                 .event_body = on_event,
-                                 .event_scale = on_scale,
-                                 .block_record = on_block,
-                                 .record_first = on_first,
-                                 .record_step = on_step,
-                                 .shaking = on_shaking,
-                                 .strongest = on_strongest,
-                                 .outcome = outcome.slice()},
-                                {.event_count = static_cast<std::uint32_t>(event_body.size()),
-                                 .body_count = static_cast<std::uint32_t>(c.bodies.size()),
-                                 .chunk_count = first.back(),
-                                 .gravity = static_cast<float>(g),
-                                 .longest_s = 20});
-    queue.run();
+    run_kernel<kernels::Rocking>(device, event_body.size(),
+                                 {.body = on_body,
+                                  .event_body = on_event,
+                                  .event_scale = on_scale,
+                                  .block_record = on_block,
+                                  .record_first = on_first,
+                                  .record_step = on_step,
+                                  .shaking = on_shaking,
+                                  .strongest = on_strongest,
+                                  .outcome = outcome.slice()},
+                                 {.event_count = static_cast<std::uint32_t>(event_body.size()),
+                                  .body_count = static_cast<std::uint32_t>(c.bodies.size()),
+                                  .chunk_count = first.back(),
+                                  .gravity = static_cast<float>(g),
+                                  .longest_s = 20});
     EXPECT_TRUE(outcome.untouched());
     out.planes = outcome.download();
     return out;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <csignal>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <utility>
-
+#include "core/json.h"
 #include "core/thread_pool.h"
-#include "export/sim_scene.h"
 #include "export/writers.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
 #include "mujoco/running.h"
+#include "mujoco/verdict.h"
 #include "topple/parse.h"
 
 // Exports as MuJoCo reads and runs them.
@@ -106,3 +101,94 @@ TEST_F(ExportStands, SlowAParsedRoomStands) {
 
 }  // namespace
 }  // namespace topple::exports::test
+
+// What a run in a simulator says about what a parse says; no simulator is needed for that.
+namespace topple::mujoco::test {
+namespace {
+
+Object object(std::int32_t id, double barrier_J, double error_J, double release_J) {
+    Object out;
+    out.id = id;
+    out.barrier_J = barrier_J;
+    out.barrier_error_J = error_J;
+    out.release_J = release_J;
+    return out;
+}
+
+// The ground; one that stays as said; one that falls as said; one that moves unlike said; one that
+// nobody can tell; one that is held; one with nothing to release.
+struct Room {
+    Scene scene;
+    ExportSummary exported;
+    Settled run;
+    Room() {
+        scene.objects = {object(0, 0, 0, 0),   object(1, 2, 0.1, 3),   object(2, 0, 0.1, 1),
+                         object(3, 1, 0.1, 1), object(4, 0.1, 0.2, 1), object(5, 1, 0, 1),
+                         object(6, 0, 0.1, 0)};
+        scene.objects[0].grounded = true;
+        for (const Object& o : scene.objects) {
+            ExportedBody body;
+            body.object = o.id;
+            body.name = "object_" + std::to_string(o.id);
+            body.held = o.id == 5;
+            exported.bodies.push_back(body);
+        }
+        exported.bodies.push_back({});
+        run.version = "2.2.2";
+        run.simulated_s = 5;
+        run.wall_s = 2.5;
+        run.motions = {{"object_1", 0.001, 0.1, 0.01}, {"object_2", 0.4, 80, 1.5},
+                       {"object_3", 0.001, 30, 0.5},   {"object_4", 0.02, 1, 0.2},
+                       {"object_6", 0, 0, 0},          {"pad_7", 1, 1, 1}};
+    }
+};
+
+TEST(Verdict, SaysWhereBothAgree) {
+    const Room room;
+    const Verdict verdict = judge(room.scene, room.exported, room.run, 5);
+    ASSERT_EQ(verdict.objects.size(), 6u);
+    const auto agrees = [&](std::size_t n) { return verdict.objects[n - 1].agrees(); };
+    EXPECT_EQ(agrees(1), true);
+    EXPECT_EQ(agrees(2), true);
+    EXPECT_EQ(agrees(3), false);
+    EXPECT_EQ(agrees(4), std::nullopt);
+    EXPECT_EQ(agrees(5), std::nullopt);
+    EXPECT_EQ(agrees(6), true);
+    EXPECT_EQ(verdict.count(Says::stable).free, 3u);
+    EXPECT_EQ(verdict.count(Says::stable).stay, 2u);
+    EXPECT_EQ(verdict.count(Says::falls).stay, 0u);
+    EXPECT_EQ(verdict.count().free, 5u);
+    EXPECT_EQ(verdict.count().stay, 2u);
+}
+
+TEST(Verdict, IsToldAsTextAndJson) {
+    const Room room;
+    const Verdict verdict = judge(room.scene, room.exported, room.run, 5);
+    const auto json = Json::parse(verdict_json(verdict));
+    EXPECT_EQ(json.at("simulator"), "MuJoCo 2.2.2");
+    EXPECT_EQ(json.at("real_time_factor"), 2.0);
+    EXPECT_EQ(json.at("counts").at("stable").at("stay"), 2);
+    EXPECT_EQ(json.at("objects").at(2).at("agrees"), false);
+    EXPECT_TRUE(json.at("objects").at(3).at("agrees").is_null());
+    EXPECT_FALSE(json.at("objects").at(4).at("free").get<bool>());
+    const std::string text = verdict_text(verdict);
+    EXPECT_TRUE(text.starts_with("MuJoCo 2.2.2: 2 of 5 objects stay within 1 cm")) << text;
+    EXPECT_NE(text.find("disagrees"), std::string::npos);
+    EXPECT_NE(text.find("\nheld"), std::string::npos);
+}
+
+TEST(Verdict, SaysWhatARunLeftOut) {
+    Room room;
+    room.run.cut_short = "it became unstable";
+    room.run.left_out = 3;
+    room.run.motions[0].moved_m = std::nan("");
+    const Verdict verdict = judge(room.scene, room.exported, room.run, 5);
+    EXPECT_FALSE(verdict.objects[0].stays());
+    EXPECT_TRUE(Json::parse(verdict_json(verdict)).at("objects").at(0).at("moved_m").is_null());
+    const std::string text = verdict_text(verdict);
+    EXPECT_NE(text.find("it became unstable"), std::string::npos);
+    EXPECT_NE(text.find("no room for all contacts"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace topple::mujoco::test

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <vector>
+#include "standard.h"
 
 // Of the kernels that measure a device's arithmetic and memory.
 namespace topple::oracle {

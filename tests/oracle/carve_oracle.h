@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-
+#include "standard.h"
 #include "topple/input.h"
 #include "vdb/voxel_scene.h"
 
@@ -30,9 +26,8 @@ inline CarveVerdict carve_voxel(const vdb::VoxelFrame& grid, const Intrinsics& k
     CarveVerdict verdict;
     double world[3] = {0, 0, 0};
     for (int d = 0; d < 3; ++d) {
-        for (int a = 0; a < 3; ++a) {
+        for (int a = 0; a < 3; ++a)
             world[d] += grid.grid_from_input[a][d] * (voxel[a] + 0.5) * grid.voxel_m;
-        }
     }
     double camera[3] = {0, 0, 0};
     for (int a = 0; a < 3; ++a) {

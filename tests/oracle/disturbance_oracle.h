@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <vector>
+#include "standard.h"
 
 // The disturbance field in plain double precision, on a plain 2D grid, and the other way round than
 // the kernels: each walker scatters to the cells that a part reaches.

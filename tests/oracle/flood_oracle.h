@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <functional>
 #include <queue>
-#include <utility>
-#include <vector>
+
+#include "standard.h"
 
 namespace topple::oracle {
 

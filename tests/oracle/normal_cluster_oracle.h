@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <vector>
+#include "standard.h"
 
 namespace topple::oracle {
 

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
-#include <cmath>
-#include <cstdlib>
-#include <vector>
+
+#include "standard.h"
 
 namespace topple::oracle {
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "random.h"
 #include "topple/input.h"
 

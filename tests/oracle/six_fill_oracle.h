@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <cstdlib>
-#include <map>
-#include <vector>
+#include "standard.h"
 
 // Six-direction filling (paper, 2.2.3) by walking from each voxel, on a dense grid.
 namespace topple::oracle {

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdlib>
-#include <vector>
+
+#include "standard.h"
 
 namespace topple::oracle {
 

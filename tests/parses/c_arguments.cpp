@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "parses/c_arguments.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
 namespace topple::parses {
 
 void check_call(const char* function, int code, const topple_status& status) {

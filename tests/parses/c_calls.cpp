@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "parses/c_calls.h"
 
-#include <array>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <thread>
 
 #include "lab/temporary_folder.h"
-#include "parses/c_arguments.h"
 #include "parses/c_stage_calls.h"
 
 namespace topple::parses {

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "parses/invariants.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <fstream>
-#include <set>
-#include <sstream>
-#include <vector>
-
 #include "result/landscapes_json.h"
 #include "result/scene_json.h"
 

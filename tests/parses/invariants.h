@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-#include <string>
-
+#include "standard.h"
 #include "topple/parse.h"
 
 namespace topple::parses {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "lab/temporary_folder.h"
 #include "parses/c_calls.h"
 #include "parses/try_parse.h"
+#include "testing.h"
 
 namespace topple::parses {
 namespace {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "parses/random_scene.h"
 
-#include <cmath>
-#include <limits>
-
 #include "core/random.h"
 
 namespace topple::parses {

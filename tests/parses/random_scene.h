@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-
+#include "standard.h"
 #include "topple/parse.h"
 
 // Clouds and options by chance, for parses that nobody thought of.

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <string>
-
+#include "standard.h"
 #include "topple/device.h"
 
 namespace topple::parses {

@@ -1,14 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "core/random.h"
 #include "device/devices.h"
 #include "host/pipeline/assessed_room.h"
 #include "host/safety/random_shaking.h"
@@ -19,6 +9,7 @@
 #include "safety/objects.h"
 #include "safety/wind/wind_field.h"
 #include "simulation/simulation.h"
+#include "testing.h"
 
 // Which things fall under which disturbance (the paper's Fig. 18): topple's fields and S(W), and a
 // simulator that shakes, blows at and strikes the same things.

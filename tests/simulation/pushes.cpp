@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/pushes.h"
 
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <span>
-
 namespace topple::simulation {
 namespace {
 

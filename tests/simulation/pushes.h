@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "perf/standing_objects.h"
 #include "simulation/simulation.h"
 
 // The least energy that topples things or pushes them off what they stand on, by topple's S(W) and

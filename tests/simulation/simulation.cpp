@@ -5,11 +5,6 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <optional>
-#include <set>
 
 namespace topple::simulation {
 namespace {

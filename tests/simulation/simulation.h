@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "perf/standing_objects.h"
+#include "standard.h"
 #include "topple/input.h"
 
 // What a rigid-body simulator (Bullet, in double precision) makes of bodies of voxels. Metres,

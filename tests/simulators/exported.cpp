@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "simulators/exported.h"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "device/device.h"

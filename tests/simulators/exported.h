@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "export/named_bodies.h"
+#include "standard.h"
 
 // Scenes in all formats, for the libraries that read these.
 namespace topple::exports::test {

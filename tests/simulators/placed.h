@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <sstream>
-#include <vector>
-
 #include "export/shape.h"
+#include "testing.h"
 
 // Where a shape lies that another library has read.
 namespace topple::exports::test {

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "clouds.h"
-#include "topple/input.h"
 
 // Analytic boxes seen by pinhole cameras: depth frames, and the points and labels they give.
 namespace topple::test {

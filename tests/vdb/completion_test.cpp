@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/completion.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "boxes.h"
-#include "clouds.h"
 #include "core/scan_gaps.h"
 #include "device/device.h"
 #include "device/devices.h"
 #include "errors.h"
 #include "host/solids/cell_column.h"
-#include "topple/error.h"
+#include "vdb/boxes.h"
+#include "vdb/fill_leaves.h"
 #include "vdb/voxel_scene.h"
 
 // What filling alone gets wrong: things that sink into what they stand on, legs seen in part.
@@ -41,6 +31,15 @@ Boxes seen_from_around(std::vector<test::TestBox> boxes) {
 
 const std::vector<Role> walls{Role::wall};
 
+// What filling makes of the boxes.
+VoxelScene filled(const Boxes& boxes, std::vector<Role> roles = walls) {
+    const auto device = device::open_native();
+    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
+    scene.carve(*device, boxes.intrinsics, boxes.frames);
+    fill(*device, scene, {.columns = true, .lowest = 0, .roles = std::move(roles)});
+    return scene;
+}
+
 // Commits what a rule proposes; voxels that change.
 template <class Rule>
 std::size_t apply(VoxelScene& scene, const std::vector<Role>& roles, const Rule& rule) {
@@ -50,6 +49,15 @@ std::size_t apply(VoxelScene& scene, const std::vector<Role>& roles, const Rule&
     EXPECT_EQ(cells.primitive, scene.solid_cells().primitive);
     EXPECT_EQ(cells.k, scene.solid_cells().k);
     return claims.size();
+}
+
+// Voxels of a primitive.
+std::vector<Voxel> voxels_of(const VoxelScene& scene, std::int32_t primitive) {
+    const SolidCells cells = scene.solid_cells();
+    std::vector<Voxel> out;
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (cells.primitive[n] == primitive) out.push_back({cells.i[n], cells.j[n], cells.k[n]});
+    return out;
 }
 
 // Completed voxels of a primitive below a height.
@@ -79,10 +87,7 @@ TEST(Completion, ABoxDoesNotSinkIntoTheTableThatItHides) {
                                     {{-0.6, -0.5, 0.5}, {0.6, 0.5, 0.6}},
                                     {{-0.15, -0.15, 0.6}, {0.15, 0.15, 0.8}}});
     add_noisy_foot(boxes, 2, 0.15, 0.59);
-    const auto device = device::open_native();
-    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
-    scene.carve(*device, boxes.intrinsics, boxes.frames);
-    fill(*device, scene, {.columns = true, .lowest = 0, .roles = {}});
+    VoxelScene scene = filled(boxes, {});
     ASSERT_GT(completed_below(scene, 2, 0.61), 100u);
     EXPECT_GT(apply(scene, {}, [](const VolumeView& v) { return support_claims(v); }), 100u);
     EXPECT_EQ(completed_below(scene, 2, 0.61), 0u);
@@ -97,10 +102,7 @@ TEST(Completion, ABookEndsAtTheLedgeAboveTheNext) {
                    {{-0.2, -0.16, 0}, {0.2, 0.16, 0.1}},
                    {{-0.16, -0.12, 0.1}, {0.16, 0.12, 0.2}}};
     boxes.look({0.05, 0.02, 2}, {0, 0, 0});
-    const auto device = device::open_native();
-    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
-    scene.carve(*device, boxes.intrinsics, boxes.frames);
-    fill(*device, scene, {.columns = true, .lowest = 0, .roles = {Role::wall}});
+    VoxelScene scene = filled(boxes);
     const std::size_t before = completed_below(scene, 1, 0.11);
     ASSERT_GT(completed_below(scene, 2, 0.11), 100u);
     const StandsOn on{.above = 2, .below = 1, .height_m = 0.1};
@@ -117,10 +119,7 @@ TEST(Completion, ASofasArmIsNoThingOnItsSeat) {
     const Boxes boxes = seen_from_around({{{-2, -2, -0.2}, {2, 2, 0}},
                                           {{-0.4, -0.4, 0}, {0.4, 0.4, 0.4}},
                                           {{0.4, -0.4, 0}, {0.6, 0.4, 0.6}}});
-    const auto device = device::open_native();
-    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
-    scene.carve(*device, boxes.intrinsics, boxes.frames);
-    fill(*device, scene, {.columns = true, .lowest = 0, .roles = {Role::wall}});
+    VoxelScene scene = filled(boxes);
     const std::size_t before = completed_below(scene, 2, 0.4);
     ASSERT_GT(before, 100u);
     EXPECT_EQ(apply(scene, walls, [](const VolumeView& v) { return support_claims(v); }), 0u);
@@ -132,15 +131,10 @@ TEST(Completion, ALegGoesOnToTheSeatAndAPostWhoseTopWasSeenDoesNot) {
                                           {{-0.25, -0.25, 0.4}, {0.25, 0.25, 0.46}},
                                           {{-0.12, -0.03, 0}, {-0.06, 0.03, 0.4}},
                                           {{0.06, -0.03, 0}, {0.12, 0.03, 0.1}}});
-    const auto device = device::open_native();
-    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
-    scene.carve(*device, boxes.intrinsics, boxes.frames);
-    fill(*device, scene, {.columns = true, .lowest = 0, .roles = {Role::wall}});
+    VoxelScene scene = filled(boxes);
     const auto highest = [&](std::int32_t primitive) {
-        const SolidCells cells = scene.solid_cells();
         std::int32_t top = -1;
-        for (std::size_t n = 0; n < cells.size(); ++n)
-            if (cells.primitive[n] == primitive) top = std::max(top, cells.k[n]);
+        for (const Voxel& v : voxels_of(scene, primitive)) top = std::max(top, v[2]);
         return top;
     };
     const std::int32_t post = highest(3);
@@ -156,15 +150,11 @@ TEST(Completion, ALegGoesOnToAllThatItEndsBelow) {
                                           {{-0.25, -0.25, 0.4}, {-0.09, 0.25, 0.46}},
                                           {{-0.12, -0.03, 0}, {-0.06, 0.03, 0.4}},
                                           {{-0.09, -0.25, 0.4}, {0.25, 0.25, 0.46}}});
-    const auto device = device::open_native();
-    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
-    scene.carve(*device, boxes.intrinsics, boxes.frames);
-    fill(*device, scene, {.columns = true, .lowest = 0, .roles = {Role::wall}});
+    VoxelScene scene = filled(boxes);
     ASSERT_GT(apply(scene, walls, [](const VolumeView& v) { return leg_claims(v); }), 0u);
-    const SolidCells cells = scene.solid_cells();
     std::set<std::int32_t> columns;
-    for (std::size_t n = 0; n < cells.size(); ++n)
-        if (cells.primitive[n] == 2 && cells.k[n] == 19) columns.insert(cells.i[n]);
+    for (const Voxel& v : voxels_of(scene, 2))
+        if (v[2] == 19) columns.insert(v[0]);
     EXPECT_EQ(columns.size(), 4u) << "all of them, below either";
 }
 
@@ -227,14 +217,43 @@ TEST(Completion, WhatIsTooLargeToFillIsRefused) {
             std::array<int, 3> at{n / 2 % blocks, n / 2 / blocks, 0};
             if (n % 2) at[2] = blocks - 1;
             std::rotate(at.begin(), at.begin() + axis, at.end());
-            cloud.x.push_back(0.8f * static_cast<float>(at[0]) + 0.45f);
-            cloud.y.push_back(0.8f * static_cast<float>(at[1]) + 0.45f);
-            cloud.z.push_back(0.8f * static_cast<float>(at[2]) + 0.45f);
+            test::add(cloud, 0.8 * at[0] + 0.45, 0.8 * at[1] + 0.45, 0.8 * at[2] + 0.45);
         }
     }
     VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
                      std::vector<std::int32_t>(cloud.size(), 0));
     test::expect_input_error([&] { fill(*device, scene, {}); }, {"use ParseOptions::voxel_m = 0."});
+}
+
+// That what is left out changes nothing is what FillEqualsTheWalkOnADenseGrid shows.
+
+// Under the floor, down to a few points three metres below, nothing was seen and nothing fills.
+TEST(FillLeaves, AreFewWhereLittleCanBeFilled) {
+    test::Boxes boxes = test::Boxes::on_a_floor();
+    for (int n = 0; n < 2000; ++n) {
+        test::add(boxes.cloud, 0.001f * static_cast<float>(n), 0, -3);
+        boxes.label.push_back(-1);
+    }
+    VoxelScene scene({}, boxes.cloud, boxes.label);
+    const auto device = device::open_native();
+    scene.carve(*device, boxes.intrinsics, boxes.frames);
+    const std::vector<bool> fills{false, true, true};
+    const auto state = scene.grids().state->getConstAccessor();
+    std::size_t unseen = 0;
+    for (std::uint64_t n = 0; n < scene.grids().leaves.size(); ++n)
+        unseen += !uniformly_empty(state, scene.grids().leaves.leaf_at(n));
+    const auto leaves = leaves_to_fill(scene.grids(), fills, 2, true, 0);
+    EXPECT_GT(leaves.size(), 20u);
+    EXPECT_LT(10 * leaves.size(), unseen);
+    EXPECT_TRUE(std::ranges::is_sorted(leaves));
+    for (const LeafTable::Leaf& leaf : leaves) EXPECT_GE(leaf[2], -1);
+}
+
+// Nothing that fills: nothing to sweep.
+TEST(FillLeaves, AreNoneOfWallsAlone) {
+    const test::Boxes boxes = test::Boxes::on_a_floor();
+    const VoxelScene scene({}, boxes.cloud, boxes.label);
+    EXPECT_TRUE(leaves_to_fill(scene.grids(), {false, false, false}, 2, true, 0).empty());
 }
 
 }  // namespace

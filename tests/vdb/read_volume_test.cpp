@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/read_volume.h"
 
+#include <openvdb/io/File.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
-
+#include "device/devices.h"
 #include "host/io/files.h"
+#include "vdb/boxes.h"
 #include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 
@@ -180,13 +178,10 @@ TEST_F(ReadVolume, a_real_fog_volume) {
     if (!shared || !std::filesystem::exists(file)) GTEST_SKIP() << "no data/maps/sphere.vdb";
     const auto map = read_volume(file);
     ASSERT_GT(map.cloud.size(), 1000u);
-    Vec3 middle{};
-    const auto count = static_cast<double>(map.cloud.size());
-    for (std::size_t n = 0; n < map.cloud.size(); ++n) {
-        middle[0] += map.cloud.x[n] / count;
-        middle[1] += map.cloud.y[n] / count;
-        middle[2] += map.cloud.z[n] / count;
-    }
+    const auto mean = [&](const std::vector<float>& values) {
+        return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+    };
+    const Vec3 middle{mean(map.cloud.x), mean(map.cloud.y), mean(map.cloud.z)};
     double least = 1e9, most = 0;
     for (std::size_t n = 0; n < map.cloud.size(); ++n) {
         const double r = std::hypot(map.cloud.x[n] - middle[0], map.cloud.y[n] - middle[1],
@@ -198,14 +193,15 @@ TEST_F(ReadVolume, a_real_fog_volume) {
     EXPECT_LT(most, 1.1 * least);
 }
 
+VoxelScene of_one_point(double voxel_m) {
+    return {{voxel_m, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}},
+            test::cloud_of<std::vector<Vec3>>({{0.05, 0.05, 0.05}}),
+            std::vector<std::int32_t>{0}};
+}
+
 TEST_F(ReadVolume, free_space_becomes_empty_voxels) {
     // A voxel of surface amid free ones, some of them far beyond the scene's bounds.
-    PointCloud cloud;
-    cloud.x = {0.05f};
-    cloud.y = {0.05f};
-    cloud.z = {0.05f};
-    VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
-                     std::vector<std::int32_t>{0});
+    VoxelScene scene = of_one_point(0.1);
     SpaceMap space;
     space.voxel_m = 0.1;
     space.free = {{{-3, -3, -3}, {3, 3, 3}}, {{100, 0, 0}, {140, 15, 15}}};
@@ -227,8 +223,7 @@ TEST_F(ReadVolume, free_space_becomes_empty_voxels) {
     space.free = {{{-32768, -32768, -32768}, {32767, 32767, 32767}}};
     expect_input_error([&] { scene.set_free(space); }, {"8x8x8", "limit"});
     // Shifted by half a voxel, only voxels whose centre is free are.
-    VoxelScene other({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
-                     std::vector<std::int32_t>{0});
+    VoxelScene other = of_one_point(0.1);
     space.corner_m = {0.06, 0, 0};
     space.free = {{{1, 0, 0}, {1, 0, 0}}};
     other.set_free(space);
@@ -237,16 +232,11 @@ TEST_F(ReadVolume, free_space_becomes_empty_voxels) {
 }
 
 TEST_F(ReadVolume, solid_space_becomes_voxels_without_points) {
-    PointCloud cloud;
-    cloud.x = {0.05f};
-    cloud.y = {0.05f};
-    cloud.z = {0.05f};
     SpaceMap space;
     space.voxel_m = 0.1;
     space.free = {{{-3, -3, -3}, {3, 3, 3}}};
     space.solid = {{{10, 0, 0}, {12, 0, 1}}, {{96, 8, 8}, {111, 23, 23}}};
-    VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
-                     std::vector<std::int32_t>{0});
+    VoxelScene scene = of_one_point(0.1);
     scene.set_free(space);
     SolidCells cells = scene.solid_cells();
     commit(map_claims(scene, space), scene, cells);
@@ -257,13 +247,104 @@ TEST_F(ReadVolume, solid_space_becomes_voxels_without_points) {
     EXPECT_EQ(scene.state_at(13, 0, 1), State::invisible);
     EXPECT_EQ(scene.state_at(1, 0, 0), State::empty);
     // Twice the voxels: those whose centre lies within.
-    VoxelScene finer({0.05, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
-                     std::vector<std::int32_t>{0});
+    VoxelScene finer = of_one_point(0.05);
     space.solid = {{{0, 0, 1}, {0, 0, 1}}};
     SolidCells fine = finer.solid_cells();
     commit(map_claims(finer, space), finer, fine);
     EXPECT_EQ(fine.size(), 1u + 8);
     EXPECT_EQ(finer.state_at(1, 1, 3), State::surface);
+}
+
+using WriteVdb = test::Files;
+
+TEST_F(WriteVdb, ReadsBackTheSame) {
+    const auto boxes = test::Boxes::on_a_floor();
+    const VoxelFrame frame{0.03, {Vec3{0.8, 0, 0.6}, Vec3{0, 1, 0}, Vec3{-0.6, 0, 0.8}}};
+    VoxelScene scene(frame, boxes.cloud, boxes.label);
+    auto device = device::open_device("native");
+    scene.carve(*device, boxes.intrinsics, boxes.frames);
+    fill(*device, scene, {.votes = 2, .roles = {Role::wall}});
+    scene.set_objects(std::vector<std::int32_t>{7, 8});
+    const auto solids = scene.solid_cells();
+    std::vector<float> wind(solids.size(), 0.0f);
+    wind[5] = 2.5f;
+    const auto add = [&](const char* name, std::span<const float> values) {
+        scene.add_field(name, solids.i, solids.j, solids.k, values);
+    };
+    add("wind", wind);
+    EXPECT_THROW(add("wind", wind), Error);
+    EXPECT_THROW(add("state", wind), Error);
+    EXPECT_THROW(add("human", std::span(wind).first(3)), Error);
+    const auto path = folder_ / "volume.vdb";
+    scene.write(path);
+
+    openvdb::initialize();
+    openvdb::io::File file(path.string());
+    file.open();
+    const auto state = openvdb::gridPtrCast<openvdb::Int32Grid>(file.readGrid("state"));
+    const auto primitive = openvdb::gridPtrCast<openvdb::Int32Grid>(file.readGrid("primitive"));
+    const auto object = openvdb::gridPtrCast<openvdb::Int32Grid>(file.readGrid("object"));
+    const auto field = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("wind"));
+    EXPECT_EQ(file.getMetadata()->metaValue<double>("voxel_size_m"), 0.03);
+    EXPECT_EQ(primitive->background(), -1);
+    EXPECT_EQ(object->background(), -1);
+    const auto cells = scene.solid_cells();
+    const auto solid = solid_voxels(frame, cells, std::vector<std::int32_t>{7, 8});
+    EXPECT_EQ(state->activeVoxelCount(), cells.size());
+    EXPECT_EQ(primitive->activeVoxelCount(), cells.size());
+    EXPECT_EQ(object->activeVoxelCount(), cells.size());
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const openvdb::Coord at(cells.i[n], cells.j[n], cells.k[n]);
+        ASSERT_EQ(state->tree().getValue(at), cells.basis[n] == Basis::surface ? 1 : 3);
+        ASSERT_EQ(primitive->tree().getValue(at), cells.primitive[n]);
+        ASSERT_EQ(object->tree().getValue(at), solid.object[n]);
+        const auto world = state->indexToWorld(at);
+        ASSERT_NEAR(world.x(), solid.x[n], 1e-5);
+        ASSERT_NEAR(world.y(), solid.y[n], 1e-5);
+        ASSERT_NEAR(world.z(), solid.z[n], 1e-5);
+    }
+    // Every state, empty and invisible ones too.
+    const auto all = scene.tiles(true);
+    const auto states = scene.states(all);
+    std::size_t wrong = 0;
+    for (std::size_t n = 0; n < states.size(); ++n) {
+        const int v = static_cast<int>(n % 512);
+        const openvdb::Coord at(all.x[n / 512] + (v >> 6), all.y[n / 512] + (v >> 3 & 7),
+                                all.z[n / 512] + (v & 7));
+        wrong += state->tree().getValue(at) != states[n];
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_EQ(field->activeVoxelCount(), 1u);
+    EXPECT_EQ(field->tree().getValue({solids.i[5], solids.j[5], solids.k[5]}), 2.5f);
+}
+
+TEST_F(WriteVdb, OpensWithVdbPrint) {
+    if (std::system("command -v vdb_print > /dev/null") != 0)
+        GTEST_SKIP() << "vdb_print is missing: libopenvdb-tools";
+    const auto boxes = test::Boxes::on_a_floor();
+    VoxelScene scene({}, boxes.cloud, boxes.label);
+    scene.write(folder_ / "volume.vdb");
+    const auto listing = folder_ / "listing";
+    ASSERT_EQ(
+        std::system(("vdb_print -l " + (folder_ / "volume.vdb").string() + " > " + listing.string())
+                        .c_str()),
+        0);
+    for (const char* name : {"state", "primitive", "object"})
+        EXPECT_THAT(test::bytes_of_file(listing), testing::HasSubstr(name));
+}
+
+TEST_F(WriteVdb, EmptySceneWrites) {
+    VoxelScene scene({}, {}, {});
+    scene.write(folder_ / "volume.vdb");
+    openvdb::io::File file((folder_ / "volume.vdb").string());
+    file.open();
+    EXPECT_EQ(file.readGrid("state")->activeVoxelCount(), 0u);
+}
+
+TEST_F(WriteVdb, SaysWhatCannotBeWritten) {
+    VoxelScene scene({}, {}, {});
+    for (const auto& path : {folder_ / "absent" / "volume.vdb", std::filesystem::path("/dev/full")})
+        test::expect_input_error([&] { scene.write(path); }, {path.native()});
 }
 
 }  // namespace

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/voxel_scene.h"
 
-#include <algorithm>
-#include <limits>
-#include <set>
-#include <tuple>
-
-#include "clouds.h"
 #include "device/device.h"
-#include "errors.h"
 #include "kernels/device_harness.h"
 #include "oracle/random_depth.h"
 #include "oracle/six_fill_oracle.h"
@@ -67,9 +60,8 @@ TEST_P(Scenes, NothingFillsBelowTheFloor) {
     EXPECT_GT(fill(*device, scene, {.columns = true, .lowest = lowest, .roles = {Role::wall}}),
               500u);
     const auto cells = scene.solid_cells();
-    for (std::size_t n = 0; n < cells.size(); ++n) {
+    for (std::size_t n = 0; n < cells.size(); ++n)
         EXPECT_FALSE(cells.basis[n] != Basis::surface && cells.k[n] < lowest);
-    }
 }
 
 TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
@@ -177,9 +169,7 @@ TEST_P(Scenes, SameOnEveryBackend) {
 
 TEST_P(Scenes, FlyingPointsGoWallsStay) {
     Boxes boxes = Boxes::on_a_floor();
-    boxes.cloud.x.push_back(0.5f);  // in the air, seen through by all frames
-    boxes.cloud.y.push_back(0.5f);
-    boxes.cloud.z.push_back(0.5f);
+    test::add(boxes.cloud, 0.5, 0.5, 0.5);  // in the air, seen through by all frames
     boxes.label.push_back(1);
     VoxelScene scene({}, boxes.cloud, boxes.label);
     const auto before = scene.solid_cells().size();

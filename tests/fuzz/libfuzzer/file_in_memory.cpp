@@ -7,9 +7,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdarg>
-#include <cstring>
 
 namespace {
 

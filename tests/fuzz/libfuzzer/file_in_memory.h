@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string_view>
+#include "standard.h"
 
 namespace topple::fuzz {
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <stdlib.h>
 
-#include <cstdio>
-#include <cstring>
-
 #include "fuzz/libfuzzer/file_in_memory.h"
 #include "fuzz/readers.h"
 #include "lab/temporary_folder.h"

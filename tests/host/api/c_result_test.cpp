@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "host/api/c_api.h"
+#include "host/pipeline/small_walk.h"
 #include "points/formats/read_cloud.h"
+#include "topple/frame_labels.h"
 #include "topple/parse.h"
 
 namespace topple::test {
@@ -22,48 +16,35 @@ TEST_F(CApi, TakesCorrections) {
     const auto file = write("corrections.json", text);
     options.corrections_json = text.c_str();
     options.corrections_file = file.c_str();
-    EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(parsed(), TOPPLE_ERROR_USAGE);
     for (const bool by_file : {true, false}) {
         topple_result_release(result);
         options.corrections_json = by_file ? nullptr : text.c_str();
         options.corrections_file = by_file ? file.c_str() : nullptr;
-        ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK)
-            << status.message;
-        topple_scene scene{};
-        scene.size = sizeof(scene);
-        ASSERT_EQ(topple_result_scene(result, &scene, nullptr), TOPPLE_OK);
-        ASSERT_EQ(scene.corrections, 3u);
-        topple_correction named{};
-        named.size = sizeof(named);
-        ASSERT_EQ(topple_result_correction(result, 1, &named, nullptr), TOPPLE_OK);
+        ASSERT_EQ(parsed(), TOPPLE_OK) << status.message;
+        ASSERT_EQ(scene().corrections, 3u);
+        topple_correction named = get(topple_result_correction, 1);
         EXPECT_STREQ(named.what, "name");
         EXPECT_STREQ(named.outcome, "held");
         EXPECT_TRUE(named.held);
         ASSERT_EQ(named.object_count, 1u);
-        topple_object object{};
-        object.size = sizeof(object);
-        ASSERT_EQ(topple_result_object(result, static_cast<std::uint64_t>(named.objects[0]),
-                                       &object, nullptr),
-                  TOPPLE_OK);
-        EXPECT_STREQ(object.name, "chest");
-        ASSERT_EQ(object.corrected_count, 2u);
-        EXPECT_EQ(object.corrected[1], 2);
-        ASSERT_EQ(topple_result_correction(result, 2, &named, nullptr), TOPPLE_OK);
-        EXPECT_FALSE(named.held);
+        const topple_object chest = object(static_cast<std::uint64_t>(named.objects[0]));
+        EXPECT_STREQ(chest.name, "chest");
+        ASSERT_EQ(chest.corrected_count, 2u);
+        EXPECT_EQ(chest.corrected[1], 2);
+        EXPECT_FALSE(get(topple_result_correction, 2).held);
         EXPECT_EQ(topple_result_correction(result, 3, &named, &status), TOPPLE_ERROR_USAGE);
     }
     options.corrections_json = "{}";
     topple_result_release(result);
-    EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_INPUT);
+    EXPECT_EQ(parsed(), TOPPLE_ERROR_INPUT);
     EXPECT_THAT(status.message, testing::HasSubstr("schema"));
 }
 
 // Names are those of scene.json, of what is nested with a dot.
 TEST_F(CApi, GivesNumbersByTheirNames) {
-    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
-    topple_object crate{};
-    crate.size = sizeof(crate);
-    ASSERT_EQ(topple_result_object(result, 1, &crate, nullptr), TOPPLE_OK);
+    ASSERT_EQ(parsed(), TOPPLE_OK) << status.message;
+    const topple_object crate = object(1);
     std::vector<double> values(100);
     std::uint64_t count = 0;
     const auto code = [&](const char* of, std::uint64_t index, const char* field) {
@@ -104,10 +85,8 @@ TEST_F(CApi, GivesNumbersByTheirNames) {
 
 TEST_F(CApi, SaysWhatMayBeTouched) {
     options.disturbances = 0;
-    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
-    topple_object crate{};
-    crate.size = sizeof(crate);
-    ASSERT_EQ(topple_result_object(result, 1, &crate, nullptr), TOPPLE_OK);
+    ASSERT_EQ(parsed(), TOPPLE_OK) << status.message;
+    const topple_object crate = object(1);
     ASSERT_FALSE(crate.grounded);
     const double level[3] = {1, 0, 0}, upwards[3] = {0, 0, 1};
     const auto asked = [&](const double* way, double force_N, double impulse_Ns) {
@@ -133,15 +112,13 @@ TEST_F(CApi, SaysWhatMayBeTouched) {
 
 // The structs are filled from the same list of fields as scene.json: one member of each kind.
 TEST_F(CApi, ParsesAsTheLibraryDoes) {
-    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
+    ASSERT_EQ(parsed(), TOPPLE_OK) << status.message;
     EXPECT_STREQ(status.message, "");
     ParseOptions cpp;
     cpp.device = device::open_device("native");
     cpp.disturbances = {"wind"};
     const Scene expected = parse(room.cloud, cpp).scene;
-    topple_scene scene{};
-    scene.size = sizeof(scene);
-    ASSERT_EQ(topple_result_scene(result, &scene, nullptr), TOPPLE_OK);
+    const topple_scene scene = this->scene();
     ASSERT_EQ(scene.objects, expected.objects.size());
     ASSERT_EQ(scene.points, room.cloud.size());
     EXPECT_EQ(scene.notes, expected.notes.size());
@@ -152,9 +129,7 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
     EXPECT_EQ(topple_result_point_normals(result, 2)[3], expected.points.nz[3]);
     EXPECT_EQ(topple_result_point_index(result), nullptr);
     for (std::size_t n = 0; n < scene.objects; ++n) {
-        topple_object object{};
-        object.size = sizeof(object);
-        ASSERT_EQ(topple_result_object(result, n, &object, nullptr), TOPPLE_OK);
+        const topple_object object = this->object(n);
         const Object& o = expected.objects[n];
         EXPECT_EQ(object.barrier_J, o.barrier_J);
         double risk = 0, chance = 0;
@@ -196,18 +171,9 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
         EXPECT_TRUE(
             std::equal(directed.push_N.begin(), directed.push_N.end(), object.push_by_direction_N));
     }
-    topple_primitive primitive{};
-    primitive.size = sizeof(primitive);
-    EXPECT_EQ(topple_result_primitive(result, 0, &primitive, nullptr), TOPPLE_OK);
-    EXPECT_EQ(primitive.mass_kg, expected.primitives[0].mass_kg);
-    topple_contact contact{};
-    contact.size = sizeof(contact);
-    EXPECT_EQ(topple_result_contact(result, 0, &contact, nullptr), TOPPLE_OK);
-    EXPECT_EQ(contact.relation, expected.contacts[0].relation);
-    topple_support support{};
-    support.size = sizeof(support);
-    EXPECT_EQ(topple_result_support(result, 0, &support, nullptr), TOPPLE_OK);
-    EXPECT_EQ(support.area_m2, expected.supports[0].area_m2);
+    EXPECT_EQ(get(topple_result_primitive, 0).mass_kg, expected.primitives[0].mass_kg);
+    EXPECT_EQ(get(topple_result_contact, 0).relation, expected.contacts[0].relation);
+    EXPECT_EQ(get(topple_result_support, 0).area_m2, expected.supports[0].area_m2);
     EXPECT_EQ(topple_result_write(result, path("map").c_str(), TOPPLE_WRITE_OCTOMAP, &status),
               TOPPLE_OK);
     EXPECT_TRUE(std::filesystem::exists(path("map/map.bt")));
@@ -254,10 +220,78 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
 TEST_F(CApi, CoordinatesMayStayOutside) {
     options.without_coordinates = 1;
     options.disturbances = 0;
-    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
+    ASSERT_EQ(parsed(), TOPPLE_OK) << status.message;
     EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_result_add_coordinates(result, &cloud, &status), TOPPLE_OK);
     EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_OK)
+        << status.message;
+}
+
+TEST_F(CApi, FramesAreParsedAsThoseOfCpp) {
+    const scenes::Sequence walk = small_walk();
+    std::vector<topple_frame> images(walk.frames.size());
+    std::vector<double> poses;
+    const FramesView expected = frames_view_of(walk);
+    for (std::size_t n = 0; n < images.size(); ++n) {
+        const DepthFrame& frame = walk.frames[n];
+        topple_frame_init(&images[n], sizeof(topple_frame));
+        images[n].depth = frame.depth.data();
+        poses.insert(poses.end(), frame.camera_to_world.begin(), frame.camera_to_world.end());
+    }
+    topple_frames frames;
+    topple_frames_init(&frames, sizeof(frames));
+    frames.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
+    frames.count = images.size();
+    frames.camera_to_world = poses.data();
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_ERROR_USAGE);
+    frames.frames = images.data();
+    options.disturbances = 0;
+    ASSERT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_OK)
+        << status.message;
+    ParseOptions same;
+    same.device = device::open_device("native", 2);
+    same.disturbances = {};
+    const ParseResult parsed = parse(expected, same);
+    const Scene& scene = parsed.scene;
+    const topple_scene got = this->scene();
+    ASSERT_EQ(got.points, scene.points.x.size());
+    EXPECT_STREQ(got.source, "frames");
+    EXPECT_TRUE(std::ranges::equal(scene.points.object,
+                                   std::span(topple_result_point_objects(result), got.points)));
+    // The labels of pixels, too, which need the result no more.
+    topple_labeller* labeller = nullptr;
+    ASSERT_EQ(topple_labeller_create(result, &labeller, &status), TOPPLE_OK) << status.message;
+    topple_result_release(result);
+    result = nullptr;
+    std::vector<std::int32_t> primitives(std::size_t{96} * 72), objects(primitives.size(), -7);
+    ASSERT_EQ(
+        topple_labeller_label(labeller, &frames, 2, primitives.data(), objects.data(), &status),
+        TOPPLE_OK)
+        << status.message;
+    const FrameLabels labels = FrameLabeller(parsed).label(expected, 2);
+    EXPECT_EQ(primitives, labels.primitive);
+    EXPECT_EQ(objects, labels.object);
+    EXPECT_EQ(topple_labeller_label(labeller, &frames, 2, nullptr, nullptr, &status), TOPPLE_OK);
+    EXPECT_EQ(topple_labeller_label(labeller, &frames, 6, nullptr, objects.data(), &status),
+              TOPPLE_ERROR_USAGE);
+    EXPECT_STREQ(status.message, "frames: there is no frame 6: they count from 0, and there are 6");
+    topple_labeller_release(labeller);
+    EXPECT_EQ(topple_labeller_create(nullptr, &labeller, &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(labeller, nullptr);
+
+    // One by one, up to one that can't be had.
+    frames.frames = nullptr;
+    frames.user = images.data();
+    frames.load = [](std::uint64_t n, topple_frame* frame, void* user) {
+        *frame = static_cast<topple_frame*>(user)[n];
+        return n == 3 ? 7 : 0;
+    };
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_ERROR_INPUT);
+    EXPECT_STREQ(status.message, "frames: load() returned 7 for frame 3");
+    frames.camera_to_world = nullptr;
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_ERROR_USAGE);
+    frames.count = 1;
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_OK)
         << status.message;
 }
 

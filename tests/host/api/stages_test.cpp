@@ -2,17 +2,9 @@
 #include "topple/stages.h"
 
 #include <CL/cl.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <numeric>
-#include <string>
-
+#include "clouds.h"
 #include "core/random.h"
-#include "errors.h"
 #include "kernels/device_harness.h"
 #include "topple/embed.h"
 
@@ -64,9 +56,7 @@ TEST(Stages, NormalsFaceWhereEachPointWasSeenFrom) {
     PointCloud cloud;
     for (int i = 0; i < 60; ++i) {
         for (int j = 0; j < 30; ++j) {
-            cloud.x.push_back(0.01f * static_cast<float>(i));
-            cloud.y.push_back(0.01f * static_cast<float>(j));
-            cloud.z.push_back(0);
+            test::add(cloud, 0.01f * static_cast<float>(i), 0.01f * static_cast<float>(j), 0);
             for (auto* values : {&cloud.viewpoint_x, &cloud.viewpoint_y})
                 values->push_back(i == 0 ? NAN : 0.1f);
             cloud.viewpoint_z.push_back(i < 30 ? 1.0f : -1.0f);
@@ -93,11 +83,7 @@ TEST(Stages, NormalsFaceWhereEachPointWasSeenFrom) {
 TEST(Stages, UnitsThatAreNoneOfRoomsAreRefused) {
     const auto device = device::open_device("native");
     PointCloud cloud;
-    for (int n = 0; n < 900; ++n) {
-        cloud.x.push_back(static_cast<float>(10 * (n % 30)));
-        cloud.y.push_back(static_cast<float>(10 * (n / 30)));
-        cloud.z.push_back(0);
-    }
+    for (int n = 0; n < 900; ++n) test::add(cloud, 10 * (n % 30), 10 * (n / 30), 0);
     std::vector<float> nx(cloud.size()), ny(nx), nz(nx);
     const std::vector<std::int32_t> label(cloud.size(), 0);
     const auto of_normals = [&](double cell_m) {
@@ -144,13 +130,9 @@ TEST(Stages, AVolumeIsCarvedAndFilled) {
     std::vector<std::int32_t> label;
     for (int a = 0; a < 40; ++a) {
         for (int b = 0; b < 40; ++b) {
-            cloud.x.push_back(0.0125f * float(a) + 0.006f);
-            cloud.y.push_back(0.0125f * float(b) + 0.006f);
-            cloud.z.push_back(0.31f);
+            test::add(cloud, 0.0125f * float(a) + 0.006f, 0.0125f * float(b) + 0.006f, 0.31f);
             label.push_back(0);
-            cloud.x.push_back(cloud.x.back());
-            cloud.y.push_back(cloud.y.back());
-            cloud.z.push_back(0.01f);
+            test::add(cloud, cloud.x.back(), cloud.y.back(), 0.01f);
             label.push_back(0);
         }
     }
@@ -293,6 +275,16 @@ struct Walks {
         }
         return static_cast<float>(sum);
     }
+    // Of a map of so many columns, and as many to the left of it.
+    void expect_density(const std::vector<float>& density, std::size_t columns,
+                        std::size_t margin) const {
+        for (std::uint32_t d = 0; d < 2; ++d)
+            for (int y = 0; y < 21; ++y)
+                for (int x = 0; x < 70; ++x)
+                    EXPECT_NEAR(
+                        density[(d * 21 + std::size_t(y)) * columns + margin + std::size_t(x)],
+                        expected(d, x, y), 1e-6);
+    }
 };
 
 TEST(Stages, ConvolvesOnHostArrays) {
@@ -300,14 +292,7 @@ TEST(Stages, ConvolvesOnHostArrays) {
     const Walks walks;
     std::vector<float> density(walks.primary.size(), 9);
     convolve(*device, walks.shape, walks.primary, walks.footprint, walks.first, density);
-    for (std::uint32_t d = 0; d < 2; ++d) {
-        for (int y = 0; y < 21; ++y) {
-            for (int x = 0; x < 70; ++x)
-                EXPECT_NEAR(density[(d * 21 + static_cast<std::size_t>(y)) * 70 +
-                                    static_cast<std::size_t>(x)],
-                            walks.expected(d, x, y), 1e-6);
-        }
-    }
+    walks.expect_density(density, 70, 0);
     EXPECT_THROW(convolve(*device, walks.shape, walks.primary, walks.footprint,
                           std::vector<std::uint32_t>{0, 4}, density),
                  Error);
@@ -386,15 +371,7 @@ TEST_F(CallersOpenCl, ConvolvesInTheirBuffers) {
                        density = buffer(std::vector<float>(std::size_t{128} * 21 * 2));
     convolve(*device, shape, {primary, wide.size()}, walks.footprint, walks.first,
              {density, density.bytes / 4});
-    const std::vector<float> found = read(density);
-    for (std::uint32_t d = 0; d < 2; ++d) {
-        for (int y = 0; y < 21; ++y) {
-            for (int x = 0; x < 70; ++x)
-                EXPECT_NEAR(found[(d * 21 + static_cast<std::size_t>(y)) * 128 + 6 +
-                                  static_cast<std::size_t>(x)],
-                            walks.expected(d, x, y), 1e-6);
-        }
-    }
+    walks.expect_density(read(density), 128, 6);
     shape.margin = 5;
     EXPECT_THROW(convolve(*device, shape, {primary, wide.size()}, walks.footprint, walks.first,
                           {density, density.bytes / 4}),

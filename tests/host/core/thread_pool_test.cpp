@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "core/thread_pool.h"
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
 #include <mutex>
 #include <new>
-#include <set>
-#include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
+
+#include "testing.h"
 
 namespace topple {
 namespace {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <utility>
-#include <vector>
-
 #include "core/solid_scene.h"
 #include "export/body.h"
 #include "export/convex_part.h"
+#include "standard.h"
 
 // Boxes along the axes, as parts and as voxels.
 namespace topple::exports::test {

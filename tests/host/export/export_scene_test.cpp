@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
 #include "core/json.h"
 #include "export/bodies_json.h"
 #include "export/formats.h"
@@ -13,6 +11,8 @@
 
 namespace topple::exports::test {
 namespace {
+
+using topple::test::message_of;
 
 // A crate of 20 x 20 x 30 cm on a slab.
 class ExportScene : public topple::test::Files {
@@ -52,14 +52,7 @@ class ExportScene : public topple::test::Files {
         return options;
     }
     std::string refused(const ExportOptions& options, ErrorKind kind) const {
-        try {
-            export_output(path("out"), options);
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), kind);
-            return error.what();
-        }
-        ADD_FAILURE() << "was not refused";
-        return "";
+        return message_of([&] { export_output(path("out"), options); }, kind);
     }
 
     ParseResult result_;
@@ -131,12 +124,8 @@ TEST_F(ExportScene, OfAFolderIsTheSameAsOfTheResult) {
 TEST_F(ExportScene, WithoutAFormatOrSolidsIsRefused) {
     EXPECT_THROW(export_scene(result_, {}), Error);
     result_.solids = nullptr;
-    try {
-        export_scene(result_, to("made"));
-        ADD_FAILURE();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("crate: was parsed in blocks"), std::string::npos);
-    }
+    EXPECT_THAT(message_of([&] { export_scene(result_, to("made")); }, std::nullopt),
+                testing::HasSubstr("crate: was parsed in blocks"));
     EXPECT_FALSE(std::filesystem::exists(path("made")));
 }
 

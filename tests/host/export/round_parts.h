@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "core/vectors.h"
 #include "export/shape.h"
+#include "standard.h"
 
 // Corners of round solids.
 namespace topple::exports::test {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <utility>
-
 #include "export/sim_scene.h"
 #include "host/export/blocks.h"
 #include "host/export/round_parts.h"

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "export/stand.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "export/brace.h"
 #include "export/floor.h"
 #include "export/footing.h"
 #include "export/separate.h"
 #include "export/simplify.h"
 #include "host/export/blocks.h"
+#include "testing.h"
 
 namespace topple::exports::test {
 namespace {

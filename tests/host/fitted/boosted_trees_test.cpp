@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fitted/boosted_trees.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
-
 #include "errors.h"
 #include "fitted/model_tables.h"
-#include "topple/error.h"
 
 namespace topple::fitted {
 namespace {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "clouds.h"
 #include "core/depth_noise.h"
 #include "points/frames_fusion.h"
 #include "points/frames_witnesses.h"
 #include "random.h"
+#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::geometry {
@@ -188,10 +184,8 @@ TEST(Organised, GivesItsFrameBack) {
         const DepthFrame want = view(1, 0);
         for (std::uint32_t i = 0; i < want.depth.size(); i += 3) {
             const double z = want.depth[i] / 1000.0;
-            cloud.x.push_back(static_cast<float>((i % camera.width - camera.cx) / camera.fx * z));
-            cloud.y.push_back(
-                static_cast<float>(side * (i / camera.width - camera.cy) / camera.fy * z));
-            cloud.z.push_back(static_cast<float>(side * z));
+            test::add(cloud, (i % camera.width - camera.cx) / camera.fx * z,
+                      side * (i / camera.width - camera.cy) / camera.fy * z, side * z);
             cloud.pixel.push_back(i);
         }
         Intrinsics k;
@@ -200,9 +194,8 @@ TEST(Organised, GivesItsFrameBack) {
         EXPECT_NEAR(k.fx, camera.fx, 0.01);
         EXPECT_NEAR(k.cy, camera.cy, 0.01);
         EXPECT_EQ(frame.camera_to_world[5], side);
-        for (std::uint32_t i = 0; i < want.depth.size(); i += 3) {
+        for (std::uint32_t i = 0; i < want.depth.size(); i += 3)
             ASSERT_NEAR(frame.depth[i] / k.depth_scale, want.depth[i] / 1000.0, 1e-4);
-        }
         for (std::size_t i = 0; i < cloud.size(); ++i) cloud.x[i] = static_cast<float>(i % 7);
         EXPECT_FALSE(frame_of_organised_cloud(cloud, k, frame));
     }

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/manhattan.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "clouds.h"
 #include "device/devices.h"
 #include "random.h"
+#include "testing.h"
 
 namespace topple::geometry {
 namespace {
@@ -21,8 +18,7 @@ PointCloud ball() {
     test::Random random(9);
     PointCloud out;
     for (int i = 0; i < 40'000; ++i) {
-        const Vector3d p = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-        test::add(out, p);
+        test::add(out, Vector3d(random.normal(), random.normal(), random.normal()).normalized());
     }
     return out;
 }
@@ -32,9 +28,8 @@ PointCloud room(const Eigen::Matrix3d& turn, bool walls, std::uint64_t seed) {
     test::Random random(seed);
     PointCloud cloud;
     const auto add = [&](const Vector3d& p) {
-        const Vector3d q =
-            turn * (p + 0.003 * Vector3d(random.normal(), random.normal(), random.normal()));
-        test::add(cloud, q);
+        const Vector3d noise(random.normal(), random.normal(), random.normal());
+        test::add(cloud, Vector3d(turn * (p + 0.003 * noise)));
     };
     for (int i = 0; i < 60'000; ++i) add({4 * random.uniform(), 3 * random.uniform(), 0});
     for (int i = 0; i < 6'000; ++i)
@@ -197,8 +192,7 @@ TEST_F(Manhattan, NothingToGoBy) {
 void add_rectangle(PointCloud& cloud, const Vector3d& at, const Vector3d& a, const Vector3d& b) {
     for (double u = 0; u < a.norm(); u += 0.01) {
         for (double v = 0; v < b.norm(); v += 0.01) {
-            const Vector3d p = at + u * a.normalized() + v * b.normalized();
-            test::add(cloud, p);
+            test::add(cloud, Vector3d(at + u * a.normalized() + v * b.normalized()));
         }
     }
 }
@@ -220,37 +214,44 @@ PointCloud turned(PointCloud cloud, const Eigen::Matrix3d& turn) {
     return cloud;
 }
 
-TEST_F(Manhattan, AWallDoesNotPassForTheFloor) {
-    PointCloud view;  // a large wall ahead, and a strip of the floor before it
-    add_rectangle(view, {-1.5, 2, -1.2}, {3, 0, 0}, {0, 0, 2.4});
-    add_rectangle(view, {-1.5, 1.7, -1.2}, {3, 0, 0}, {0, 0.3, 0});
-    const Eigen::Matrix3d turn = to_camera(20);
-    const SceneFrame frame = frame_of_view(turned(view, turn));
-    EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5);
-}
-
-TEST_F(Manhattan, WallsAloneGiveUp) {
-    PointCloud view;  // a corner: two walls, no level surface
-    add_rectangle(view, {0, 2, -0.8}, {-1.2, -1.2, 0}, {0, 0, 1.6});
-    add_rectangle(view, {0, 2, -0.8}, {1.2, -1.2, 0}, {0, 0, 1.6});
-    const Eigen::Matrix3d turn = to_camera(20);
-    const SceneFrame frame = frame_of_view(turned(view, turn));
-    EXPECT_EQ(frame.up_method, "upright-surfaces");
-    EXPECT_FALSE(frame.note.empty());
-    EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 1.0);
-}
-
-TEST_F(Manhattan, ATableSeenStraightFromAboveIsLevel) {
-    PointCloud view;
-    add_rectangle(view, {-0.6, -0.4, -1}, {1.2, 0, 0}, {0, 0.8, 0});
-    const Eigen::Matrix3d turn = to_camera(90);
-    const SceneFrame frame = frame_of_view(turned(view, turn));
-    EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5);
-    EXPECT_FALSE(frame.note.empty());  // it may be a wall
+TEST_F(Manhattan, OfWhatACameraSees) {
+    struct Rectangle {
+        Vector3d at, a, b;
+    };
+    const struct {
+        const char* what;
+        double pitch;
+        std::vector<Rectangle> seen;
+        bool floor;  // is there, or else the note says that none is
+    } cases[] = {
+        {"a large wall ahead, and a strip of the floor before it",
+         20,
+         {{{-1.5, 2, -1.2}, {3, 0, 0}, {0, 0, 2.4}}, {{-1.5, 1.7, -1.2}, {3, 0, 0}, {0, 0.3, 0}}},
+         true},
+        {"two walls",
+         20,
+         {{{0, 2, -0.8}, {-1.2, -1.2, 0}, {0, 0, 1.6}},
+          {{0, 2, -0.8}, {1.2, -1.2, 0}, {0, 0, 1.6}}},
+         false},
+        {"a table straight from above, which may be a wall",
+         90,
+         {{{-0.6, -0.4, -1}, {1.2, 0, 0}, {0, 0.8, 0}}},
+         false},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.what);
+        PointCloud view;
+        for (const Rectangle& r : c.seen) add_rectangle(view, r.at, r.a, r.b);
+        const Eigen::Matrix3d turn = to_camera(c.pitch);
+        const SceneFrame frame = frame_of_view(turned(view, turn));
+        EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 1);
+        EXPECT_EQ(frame.note.empty(), c.floor) << frame.note;
+        EXPECT_EQ(frame.up_method == "upright-surfaces", c.seen.size() == 2 && !c.floor);
+    }
 }
 
 TEST_F(Manhattan, NormalsTellACamerasAxes) {
-    PointCloud view;  // as in AWallDoesNotPassForTheFloor, but with normals instead of a camera
+    PointCloud view;  // a wall and a floor, with normals instead of a camera
     add_rectangle(view, {-1.5, 2, -1.2}, {3, 0, 0}, {0, 0, 2.4});
     const std::size_t wall = view.size();
     add_rectangle(view, {-1.5, 1.2, -1.2}, {3, 0, 0}, {0, 0.8, 0});
@@ -296,9 +297,7 @@ PointCloud attic(double slope_degrees) {
     add_rectangle(gable, {0, 0, 0}, {0, 2.6, 0}, {0, 0, 0.6 + 2.6 * slope});
     for (std::size_t n = 0; n < gable.size(); ++n) {
         if (double{gable.z[n]} > 0.6 + (2.6 - double{gable.y[n]}) * slope) continue;
-        out.x.push_back(gable.x[n]);
-        out.y.push_back(gable.y[n]);
-        out.z.push_back(gable.z[n]);
+        test::add(out, gable.x[n], gable.y[n], gable.z[n]);
     }
     return out;
 }

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "points/pose_comparison.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <cmath>
-#include <numbers>
-#include <optional>
-#include <utility>
 
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
+#include "testing.h"
 
 // Depth frames tell in which convention their poses were given.
 namespace topple {

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 
 #include "clouds.h"
 #include "geometry/surface_samples.h"

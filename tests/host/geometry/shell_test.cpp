@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/shell.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <initializer_list>
-#include <limits>
-#include <set>
-#include <string>
 
 #include "core/thread_pool.h"
 #include "geometry/shell_features.h"
 #include "host/geometry/sampled_faces.h"
+#include "testing.h"
 
 namespace topple::geometry::shell_of_a_room {
 namespace {

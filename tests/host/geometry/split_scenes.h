@@ -2,13 +2,8 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <set>
-#include <vector>
 
+#include "clouds.h"
 #include "geometry/segmentation.h"
 
 // Surfels of analytic bodies with known normals, made here without the kernel that estimates them.
@@ -101,9 +96,8 @@ struct Builder {
             n = n.norm() > 1e-6 ? Eigen::Vector3d(n.normalized()) : Eigen::Vector3d::Zero();
             index[cell] = static_cast<std::uint32_t>(s.x.size());
             s.cx.push_back(cell[0]), s.cy.push_back(cell[1]), s.cz.push_back(cell[2]);
-            s.x.push_back(float(p.x())), s.y.push_back(float(p.y())), s.z.push_back(float(p.z()));
-            s.nx.push_back(float(n.x())), s.ny.push_back(float(n.y())),
-                s.nz.push_back(float(n.z()));
+            test::add(s, p);
+            test::add_normal(s, n);
             s.weight.push_back(static_cast<float>(members.size()));
         }
         s.neighbour_first.push_back(0);

@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/surfels.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <tuple>
-
 #include "clouds.h"
+#include "core/random.h"
 #include "device/devices.h"
+#include "points/given_attributes.h"
 #include "random.h"
+#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::geometry {
 namespace {
 
-using test::Random;
-
 using test::add;
+using test::Random;
 
 // A box of 1 x 0.8 x 0.6 m seen from inside, with noise along the faces' normals.
 PointCloud room(double noise, std::uint64_t seed) {
@@ -80,9 +74,8 @@ TEST_F(SurfelsTest, NoiseThickerThanACellLeavesOneLayer) {
     Random random(3);
     PointCloud cloud;
     // Offset by half a cell, so that the plane does not lie on a border between cells.
-    for (int i = 0; i < 40'000; ++i) {
+    for (int i = 0; i < 40'000; ++i)
         add(cloud, random.uniform(), random.uniform(), 0.01 + 0.008 * random.normal());
-    }
     const Surfels s = make_surfels(*device, cloud, 0.02, {}, {});
     EXPECT_LT(s.size(), 2500u * 12 / 10);  // 50 x 50 cells
     double square = 0;
@@ -121,13 +114,10 @@ TEST_F(SurfelsTest, WallThinnerThanACellHasTwoSides) {
             const bool top = (i & 1) == 0;
             add(cloud, random.uniform(), random.uniform(),
                 0.007 + (top ? thick : 0) + noise * random.normal());
-            if (stored) {
-                cloud.nx.push_back(0);
-                cloud.ny.push_back(0);
-                cloud.nz.push_back(top ? 1.0f : -1.0f);
-            } else {
+            if (stored)
+                test::add_normal(cloud, Vec3{0, 0, top ? 1.0 : -1.0});
+            else
                 eye_of.push_back(top ? 0 : 1);
-            }
         }
         if (stored) eyes.clear();
         const Surfels s = make_surfels(*device, cloud, 0.02, eyes, eye_of);
@@ -139,10 +129,8 @@ TEST_F(SurfelsTest, WallThinnerThanACellHasTwoSides) {
         }
         EXPECT_EQ(s.size(), 2 * 2500u);
         EXPECT_EQ(right, s.size());
-        for (std::size_t i = 0; i < cloud.size(); ++i) {
-            const bool top = (i & 1) == 0;
-            ASSERT_EQ(s.nz[s.of_point[i]] > 0, top);
-        }
+        for (std::size_t i = 0; i < cloud.size(); ++i)
+            ASSERT_EQ(s.nz[s.of_point[i]] > 0, (i & 1) == 0);
     }
 }
 
@@ -152,9 +140,7 @@ TEST_F(SurfelsTest, WhatIsNoWallHasOneSide) {
     PointCloud cloud;
     for (int i = 0; i < 40'000; ++i) {
         add(cloud, random.uniform(), random.uniform(), 0.01 + 0.002 * random.normal());
-        cloud.nx.push_back(0);
-        cloud.ny.push_back(0);
-        cloud.nz.push_back(random.uniform() < 0.1 ? -1.0f : 1.0f);
+        test::add_normal(cloud, Vec3{0, 0, random.uniform() < 0.1 ? -1.0 : 1.0});
     }
     const Surfels s = make_surfels(*device, cloud, 0.02, {}, {});
     EXPECT_LT(s.size(), 2520u);
@@ -314,6 +300,109 @@ TEST_F(SurfelsTest, ColoursAreMeansOfWhatIsKnown) {
     }
     EXPECT_GT(red, 250u);
     EXPECT_GT(unknown, 500u);
+}
+
+// A corner of three walls of 1 m at 1 cm, with 2 mm of noise and normals that are right.
+PointCloud corner() {
+    PointCloud out;
+    topple::Random random(3);
+    const auto noise = [&] { return static_cast<float>(0.004 * (random.uniform() - 0.5)); };
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int i = 0; i < 10'000; ++i) {
+            std::array<float, 3> p{}, n{};
+            for (std::size_t a = 0; a < 3; ++a)
+                p[a] = std::size_t(axis) == a ? noise() : static_cast<float>(random.uniform());
+            n[axis] = 1;
+            add(out, p);
+            test::add_normal(out, n);
+        }
+    }
+    return out;
+}
+
+TEST(GivenAttributes, normals_against_their_surface) {
+    using Change = std::function<void(PointCloud&, std::size_t, topple::Random&)>;
+    const struct {
+        const char* what;
+        bool contradict;
+        Change change;
+    } cases[] = {
+        {"right", false, [](PointCloud&, std::size_t, topple::Random&) {}},
+        {"noisy", false,
+         [](PointCloud& c, std::size_t i, topple::Random& r) {
+             for (auto* n : {&c.nx, &c.ny, &c.nz})
+                 (*n)[i] += static_cast<float>(0.5 * (r.uniform() - 0.5));
+         }},
+        {"all turned, which only views tell", false,
+         [](PointCloud& c, std::size_t i, topple::Random&) {
+             for (auto* n : {&c.nx, &c.ny, &c.nz}) (*n)[i] *= -1;
+         }},
+        {"none known", false,
+         [](PointCloud& c, std::size_t i, topple::Random&) { c.nx[i] = c.ny[i] = c.nz[i] = 0; }},
+        {"at random", true,
+         [](PointCloud& c, std::size_t i, topple::Random& r) {
+             for (auto* n : {&c.nx, &c.ny, &c.nz}) (*n)[i] = static_cast<float>(r.uniform() - 0.5);
+         }},
+        {"all up", true,
+         [](PointCloud& c, std::size_t i, topple::Random&) {
+             c.nx[i] = c.ny[i] = 0;
+             c.nz[i] = 1;
+         }},
+        {"axes swapped", true,
+         [](PointCloud& c, std::size_t i, topple::Random&) { std::swap(c.nx[i], c.nz[i]); }},
+        {"of either side", true,
+         [](PointCloud& c, std::size_t i, topple::Random& r) {
+             const float side = r.uniform() < 0.5 ? -1 : 1;
+             for (auto* n : {&c.nx, &c.ny, &c.nz}) (*n)[i] *= side;
+         }},
+    };
+    const PointCloud right = corner();
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.what);
+        PointCloud cloud = right;
+        topple::Random random(5);
+        for (std::size_t i = 0; i < cloud.size(); ++i) c.change(cloud, i, random);
+        const GivenAttributes given = look_at_attributes(cloud, 0.01);
+        EXPECT_EQ(given.normals_contradict(), c.contradict) << given.askew << " " << given.opposed;
+        EXPECT_TRUE(given.colours_tell());
+    }
+}
+
+TEST(GivenAttributes, colours_that_tell_nothing) {
+    using Colour = std::function<std::uint8_t(const PointCloud&, std::size_t, topple::Random&)>;
+    const auto random_byte = [](topple::Random& r) {
+        return static_cast<std::uint8_t>(1 + 254 * r.uniform());
+    };
+    const struct {
+        const char* what;
+        bool tell;
+        Colour colour;
+    } cases[] = {
+        {"walls of one colour each, noisy", true,
+         [](const PointCloud& c, std::size_t i, topple::Random& r) {
+             return static_cast<std::uint8_t>(60 + 90 * (c.nx[i] > 0.5f) + 60 * r.uniform());
+         }},
+        {"a pattern", true,
+         [](const PointCloud& c, std::size_t i, topple::Random&) {
+             return static_cast<std::uint8_t>(128 +
+                                              100 * std::sin(20 * (c.x[i] + c.y[i] + c.z[i])));
+         }},
+        {"at random", false,
+         [&](const PointCloud&, std::size_t, topple::Random& r) { return random_byte(r); }},
+        {"one", false,
+         [](const PointCloud&, std::size_t, topple::Random&) { return std::uint8_t{200}; }},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.what);
+        PointCloud cloud = corner();
+        topple::Random random(7);
+        for (std::size_t i = 0; i < cloud.size(); ++i)
+            for (auto* channel : {&cloud.red, &cloud.green, &cloud.blue})
+                channel->push_back(c.colour(cloud, i, random));
+        const GivenAttributes given = look_at_attributes(cloud, 0.01);
+        EXPECT_EQ(given.colours_tell(), c.tell) << given.colour_noise;
+        EXPECT_FALSE(given.normals_contradict());
+    }
 }
 
 }  // namespace

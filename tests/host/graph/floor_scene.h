@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "core/solid_cells.h"
 #include "graph/contact_graph.h"
 #include "host/physics/solids.h"
-#include "physics/bodies.h"
 
 namespace topple::test {
 

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "graph/rest.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "graph/stable_objects.h"
 #include "host/graph/floor_scene.h"
 #include "kernels/device_harness.h"
-#include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "graph/stable_objects.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "host/graph/floor_scene.h"
 #include "kernels/device_harness.h"
 

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "graph/swendsen_wang.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <map>
-#include <set>
-#include <stdexcept>
-#include <utility>
 
 #include "core/random.h"
+#include "testing.h"
 
 namespace topple::graph {
 namespace {
@@ -93,9 +85,8 @@ void expect_enumerated(std::int32_t nodes, const std::vector<bool>& pinned) {
             if (label[edges[e].a] == label[edges[e].b]) joined[e] += p;
         }
     }
-    for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (std::size_t e = 0; e < edges.size(); ++e)
         EXPECT_NEAR(sampled.joined[e], joined[e] / total, 0.02) << edges[e].a << "-" << edges[e].b;
-    }
     EXPECT_NEAR(sampled.energy, least, 1e-9);
 }
 
@@ -192,9 +183,8 @@ TEST(SwendsenWang, GroupsStayConnected) {
     // A path 0-1-2: 0 and 2 may only be together with 1, however cheap that would be.
     const std::vector<Edge> path{{0, 1, 0.5}, {1, 2, 0.5}};
     const auto ends_attract = [](std::span<const GroupQuery> groups, std::span<double> energies) {
-        for (std::size_t i = 0; i < groups.size(); ++i) {
+        for (std::size_t i = 0; i < groups.size(); ++i)
             energies[i] = groups[i].nodes == Group{0, 2} ? -10 : groups[i].nodes.size() > 1 ? 1 : 0;
-        }
     };
     const Partition p = swendsen_wang_cuts(3, path, std::vector<bool>(3), {ends_attract, {}}, {});
     EXPECT_EQ(p.label, (std::vector<std::int32_t>{0, 1, 2}));

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "colour_image.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-
 #include "files.h"
 #include "points/formats/colour_frames.h"
 #include "points/formats/colour_image.h"

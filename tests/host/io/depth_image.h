@@ -3,10 +3,7 @@
 
 #include <png.h>
 
-#include <cstdint>
-#include <stdexcept>
-#include <string>
-#include <vector>
+#include "standard.h"
 
 namespace topple::test {
 

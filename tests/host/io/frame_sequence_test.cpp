@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "points/formats/frame_sequence.h"
 
-#include <cmath>
-
 #include "depth_image.h"
 #include "files.h"
 

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <string>
-
 #include "files.h"
 
 // One box as mesh files of every format: corner at the origin, faces seen from outside.

@@ -1,11 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <array>
-#include <cmath>
-#include <map>
-#include <span>
-#include <string>
-
-#include "files.h"
 #include "mesh_files.h"
 #include "points/formats/read_cloud.h"
 #include "points/formats/triangulate.h"

@@ -4,7 +4,6 @@
 #include <liblzf/lzf.h>
 
 #include "colour_image.h"
-#include "depth_image.h"
 #include "files.h"
 #include "io/text.h"
 #include "motion_files.h"
@@ -45,9 +44,8 @@ class Mutation : public test::Files {
         Tally whole, cut, changed;
         try_one(name, valid, read, whole);
         EXPECT_EQ(whole.good, 1) << name << " must be valid";
-        for (std::size_t length = 0; length < valid.size(); ++length) {
+        for (std::size_t length = 0; length < valid.size(); ++length)
             try_one(name, valid.substr(0, length), read, cut);
-        }
         EXPECT_GT(cut.refused, 0) << name;
         test::Random random(valid.size());
         static const char* const tokens[] = {

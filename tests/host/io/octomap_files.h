@@ -3,13 +3,7 @@
 
 #include <octomap/OcTree.h>
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <set>
-#include <sstream>
-#include <string>
+#include "standard.h"
 
 namespace topple::test {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "points/formats/octomap.h"
 
-#include <cmath>
-
 #include "files.h"
 #include "octomap_files.h"
 

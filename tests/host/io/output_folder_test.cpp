@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "io/output_folder.h"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "files.h"
 #include "io/file_writer.h"
+#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/pending_outputs.h"
+#include "io/replace_file.h"
+#include "io/staging_folder.h"
+#include "io/text.h"
 
 namespace topple::io {
 namespace {
@@ -227,6 +233,101 @@ TEST_F(Output, an_interrupted_run_leaves_nothing) {
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 130);
     EXPECT_EQ(entries(folder_), 0u);
+}
+
+class Staging : public test::Files {
+  protected:
+    std::size_t entries() const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    }
+};
+
+TEST_F(Staging, of_a_killed_process_goes_with_the_next) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        const StagingFolder half(folder_);
+        fs::create_directory(half.path() / "out");
+        write_file(half.path() / "out/points.ply", "half");
+        raise(SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    ASSERT_EQ(entries(), 1u);
+    // What only looks so, and what is at work, stays.
+    write(".topple-abcdefghij/thesis.tex", "years");
+    write(".topple-abcdefghik/lock", "topple staging folder\n");  // others could look into it
+    const StagingFolder alive(folder_);
+    const StagingFolder next(folder_);
+    EXPECT_EQ(entries(), 4u);
+    EXPECT_TRUE(fs::exists(path(".topple-abcdefghij/thesis.tex")));
+    EXPECT_TRUE(fs::exists(alive.path()));
+    EXPECT_EQ(fs::status(next.path()).permissions(), fs::perms::owner_all);
+}
+
+TEST_F(Staging, a_file_replaces_its_like_and_nothing_else) {
+    replace_file(path("a"), "1");
+    replace_file(path("a"), "2");
+    EXPECT_EQ(bytes_of_file(path("a")), "2");
+    write("victim", "a letter");
+    fs::create_symlink("victim", path("link"));
+    fs::create_directory(path("folder"));
+    expect_input_error([&] { replace_file(path("link"), "3"); }, {"link", "is a link"});
+    expect_input_error([&] { replace_file(path("folder"), "3"); }, {"folder", "is a folder"});
+    EXPECT_EQ(bytes_of_file(path("victim")), "a letter");
+    check_own_file(path("none"), "mark");
+    expect_input_error([&] { check_own_file(path("victim"), "mark", "is no cache"); }, {"victim"});
+    EXPECT_EQ(entries(), 4u);
+}
+
+class OpenedFile : public test::Files {
+  protected:
+    OpenedFile() {
+        write("in/a/b.txt", "b");
+        write("secret.txt", "4711");
+        fs::create_symlink("../secret.txt", path("in/out"));
+        fs::create_symlink(path("secret.txt"), path("in/whole"));
+        fs::create_symlink("..", path("in/up"));
+        fs::create_symlink("/proc/self/root", path("in/magic"));
+        fs::create_symlink("a", path("in/within"));
+        EXPECT_EQ(::mkfifo(path("in/pipe").c_str(), 0600), 0);
+    }
+};
+
+TEST_F(OpenedFile, lies_in_the_folder_that_names_it) {
+    const auto read = [&](const char* name) {
+        return std::string(read_file(FileName::in(path("in"), name)).text());
+    };
+    EXPECT_EQ(read("a/b.txt"), "b");
+    EXPECT_EQ(read("within/b.txt"), "b");
+    for (const char* name : {"out", "whole", "up/secret.txt", "../secret.txt", "a/../../secret.txt",
+                             "/etc/hostname", "magic/etc/hostname"}) {
+        SCOPED_TRACE(name);
+        expect_input_error([&] { read(name); }, {"a link"});
+    }
+    expect_input_error([&] { read("pipe"); }, {"pipe", "not a regular file"});
+    expect_input_error([&] { read("a"); }, {"is a folder"});
+    std::error_code error;
+    folder_names(FileName::in(path("in"), "up"), error);
+    EXPECT_EQ(error.value(), EXDEV);
+    EXPECT_EQ(folder_names(FileName::in(path("in"), "within"), error).size(), 1u);
+    // The user's own word is taken.
+    EXPECT_EQ(read_file(path("in/out")).text(), "4711");
+    expect_input_error([&] { read_file(FileName::beside(path("in/x"), "within/b.txt")); },
+                       {"a link"});
+}
+
+TEST_F(OpenedFile, step_by_step_follows_no_link) {
+    const Descriptor folder(::open(path("in").c_str(), O_PATH | O_DIRECTORY));
+    const auto opens = [&](const char* name) {
+        return Descriptor(open_stepwise(folder.get(), name, O_RDONLY | O_NONBLOCK)).get() >= 0;
+    };
+    EXPECT_TRUE(opens("a/b.txt"));
+    for (const char* name :
+         {"out", "whole", "up/secret.txt", "../secret.txt", "within/b.txt", "magic/etc/hostname"})
+        EXPECT_FALSE(opens(name)) << name;
 }
 
 }  // namespace

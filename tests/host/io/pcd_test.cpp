@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <liblzf/lzf.h>
 
-#include <cmath>
-#include <cstdlib>
-#include <map>
-
 #include "clouds.h"
 #include "files.h"
 #include "points/formats/read_cloud.h"

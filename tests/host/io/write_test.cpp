@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <sys/resource.h>
 
-#include <cmath>
 #include <csignal>
-#include <cstring>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <stdexcept>
-#include <tuple>
 
 #include "files.h"
 #include "io/file_writer.h"

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lab/rooms/building.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "host/io/files.h"
+#include "host/lab/boxes_meet.h"
 #include "lab/temporary_folder.h"
 #include "points/formats/read_cloud.h"
 #include "topple/error.h"
@@ -27,11 +20,6 @@ struct Scanned {
 
 bool go_on(std::size_t, std::size_t) {
     return true;
-}
-
-std::string bytes_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::vector<Scanned> points_of(const std::string& ply) {
@@ -59,7 +47,7 @@ Files written(const BuildingOptions& options) {
     const TemporaryFolder folder("topple_building");
     const auto file = folder.path() / "b.ply";
     write_building(file, options, go_on);
-    return {bytes_of(file), nlohmann::json::parse(bytes_of(truth_of(file)))};
+    return {test::bytes_of_file(file), nlohmann::json::parse(test::bytes_of_file(truth_of(file)))};
 }
 
 const Files& small_building() {
@@ -245,11 +233,7 @@ TEST_P(BuildingOf, SolidsNeverOverlap) {
         const auto& parts = room.world.parts;
         for (std::size_t a = 0; a < parts.size() && parts[a].object == 0; ++a) {
             for (std::size_t b = a + 1; b < parts.size(); ++b) {
-                const auto p = parts[a].bounds(), q = parts[b].bounds();
-                bool near = true;
-                for (std::size_t k = 0; k < 3; ++k)
-                    near = near && p[0][k] < q[1][k] - 1e-9 && q[0][k] < p[1][k] - 1e-9;
-                if (!near) continue;
+                if (!boxes_meet(parts[a], parts[b])) continue;
                 EXPECT_GT(gap(parts[a], parts[b]), -1e-6)
                     << "room " << room.id << ": " << parts[a].name << " and " << parts[b].name;
             }
@@ -303,14 +287,8 @@ TEST(Building, LeavesNothingWhenItStops) {
 }
 
 TEST(Building, RefusesWhatMakesNoSense) {
-    const auto message = [](const BuildingOptions& options) -> std::string {
-        try {
-            const Building building(options);
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::usage);
-            return error.what();
-        }
-        return "none";
+    const auto message = [](const BuildingOptions& options) {
+        return test::message_of([&] { const Building building(options); }, ErrorKind::usage);
     };
     BuildingOptions options;
     options.points = 0;

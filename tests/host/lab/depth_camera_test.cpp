@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "lab/scan/depth_camera.h"
 
-#include <gtest/gtest.h>
 #include <png.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
+#include "host/io/files.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/solids/ground_truth.h"
+#include "lab/temporary_folder.h"
 
 namespace topple::scenes {
 namespace {
@@ -28,28 +22,11 @@ Vec3 back_projected(const Intrinsics& k, const Mat4& m, std::size_t at, double z
             m[8] * u + m[9] * v + m[10] * z + m[11]};
 }
 
-// A folder of this test's own, removed at the end.
-class Folder {
-  public:
-    Folder()
-        : path_(fs::temp_directory_path() /
-                ("topple_lab_" + std::to_string(::getpid()) + "_" +
-                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-        fs::remove_all(path_);
-    }
-    ~Folder() { fs::remove_all(path_); }
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
-
 std::map<std::string, std::string> contents(const fs::path& folder) {
     std::map<std::string, std::string> all;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (!entry.is_regular_file()) continue;
-        std::ifstream in(entry.path(), std::ios::binary);
-        all[fs::relative(entry.path(), folder)] = {std::istreambuf_iterator<char>(in), {}};
+        if (entry.is_regular_file())
+            all[fs::relative(entry.path(), folder)] = test::bytes_of_file(entry.path());
     }
     return all;
 }
@@ -171,7 +148,7 @@ TEST(DepthCamera, SameSeedSameBytesWithAnyThreads) {
     CameraOptions options;
     options.frames = 5;
     options.threads = 1;
-    Folder folder;
+    const TemporaryFolder folder("topple_lab");
     write_sequence(folder.path() / "a", world, walk(world, options));
     options.threads = 4;
     write_sequence(folder.path() / "b", furnished_room({.seed = 6, .tilt_deg = 5}),
@@ -189,7 +166,7 @@ TEST(DepthCamera, SingleFrameHasNoTrajectory) {
     CameraOptions options;
     options.single = true;
     const Sequence sequence = walk(world, options);
-    Folder folder;
+    const TemporaryFolder folder("topple_lab");
     write_sequence(folder.path(), world, sequence);
     EXPECT_FALSE(fs::exists(folder.path() / "trajectory.txt"));
     EXPECT_TRUE(fs::exists(folder.path() / "depth" / "0000.png"));
@@ -202,7 +179,7 @@ TEST(DepthCamera, PngHoldsTheDepths) {
     CameraOptions options;
     options.frames = 2;
     const Sequence sequence = walk(world, options);
-    Folder folder;
+    const TemporaryFolder folder("topple_lab");
     write_sequence(folder.path(), world, sequence);
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -229,7 +206,7 @@ TEST(DepthCamera, PngHoldsTheDepths) {
 
 TEST(GroundTruth, HoldsTheWorld) {
     World world = furnished_room({.seed = 21, .tilt_deg = 7});
-    Folder folder;
+    const TemporaryFolder folder("topple_lab");
     fs::create_directories(folder.path());
     write_truth(folder.path() / "truth.json", world);
     const auto truth = nlohmann::json::parse(std::ifstream(folder.path() / "truth.json"));

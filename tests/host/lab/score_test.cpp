@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "lab/scores/score.h"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "clouds.h"
 #include "lab/random.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
 #include "lab/solids/ground_truth.h"
+#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -59,11 +55,7 @@ topple::Scene perfect(const World& world) {
         return o == 4 ? 0 : o;  // the cabinet hangs on the wall
     };
     Random random(3);
-    const auto put = [](auto& list, const Vec3& p) {
-        list.x.push_back(static_cast<float>(p[0]));
-        list.y.push_back(static_cast<float>(p[1]));
-        list.z.push_back(static_cast<float>(p[2]));
-    };
+    const auto put = [](auto& list, const Vec3& p) { test::add(list, p[0], p[1], p[2]); };
     for (std::int32_t part = 0; part < static_cast<std::int32_t>(world.parts.size()); ++part) {
         const Part& p = world.parts[part];
         const auto box = p.bounds();
@@ -113,9 +105,7 @@ topple::Scene flawed(const World& world) {
     SolidVoxels kept;
     for (std::size_t n = 0; n < s.solid.x.size(); ++n) {
         if (s.solid.primitive[n] == 3 || random.chance(0.3)) continue;
-        kept.x.push_back(s.solid.x[n] + (random.chance(0.1) ? 0.1f : 0));
-        kept.y.push_back(s.solid.y[n]);
-        kept.z.push_back(s.solid.z[n]);
+        test::add(kept, s.solid.x[n] + (random.chance(0.1) ? 0.1f : 0), s.solid.y[n], s.solid.z[n]);
         kept.primitive.push_back(s.solid.primitive[n]);
         kept.object.push_back(s.solid.object[n]);
         kept.state.push_back(1);
@@ -173,7 +163,7 @@ TEST(Score, NoticesEachMistake) {
     s.solid = {};
     EXPECT_EQ(score(world, s).volume.recall.value, 0);
     s = flawless;
-    s.solid.x.push_back(2.5f), s.solid.y.push_back(0.5f), s.solid.z.push_back(1.0f);
+    test::add(s.solid, 2.5f, 0.5f, 1.0f);
     s.solid.primitive.push_back(0), s.solid.object.push_back(0), s.solid.state.push_back(1);
     EXPECT_LT(score(world, s).volume.precision.value, 1);
     s = flawless;
@@ -254,9 +244,8 @@ TEST(VolumeScore, ByHand) {
     world.parts.push_back({Shape::box, {0.2, 0.1, 0.1}, {0.4, 0.2, 0.2}, 0, 0, 1, "box"});
     SolidVoxels solid;
     const auto put = [&](int i, int j, int k) {
-        solid.x.push_back(0.02f * (static_cast<float>(i) + 0.5f));
-        solid.y.push_back(0.02f * (static_cast<float>(j) + 0.5f));
-        solid.z.push_back(0.02f * (static_cast<float>(k) + 0.5f));
+        test::add(solid, 0.02f * (static_cast<float>(i) + 0.5f),
+                  0.02f * (static_cast<float>(j) + 0.5f), 0.02f * (static_cast<float>(k) + 0.5f));
     };
     for (int i = 0; i < 10; ++i) {
         for (int j = 0; j < 10; ++j) {
@@ -332,9 +321,8 @@ TEST(Score, AgreesWithTheOutsideScorer) {
         nlohmann::json scene{{"voxel_size_m", parse.voxel_size_m},
                              {"up", parse.up},
                              {"supports", nlohmann::json::array()}};
-        for (const Support& s : parse.supports) {
+        for (const Support& s : parse.supports)
             scene["supports"].push_back({{"supporter", s.supporter}, {"supported", s.supported}});
-        }
         std::ofstream(out / "scene.json") << scene;
         const std::string text =
             output_of("PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 " + script.string() + " " +

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <map>
-
 #include "host/physics/solids.h"
 #include "kernels/device_compare.h"
 #include "kernels/device_harness.h"
+#include "physics/merge_close_points.h"
+#include "physics/rectangle.h"
 #include "physics/support_rows.h"
-#include "physics/tipping.h"
-#include "topple/error.h"
 
 namespace topple::physics {
 namespace {
@@ -57,9 +53,8 @@ TEST_P(Bodies, MassesMatchPlainSums) {
             const MassProperties& b = bodies[label];
             EXPECT_EQ(b.voxels, count);
             EXPECT_NEAR(b.mass_kg, static_cast<double>(count) * 8e-6 * density[label], 1e-12);
-            for (std::size_t a = 0; a < 3 && count; ++a) {
+            for (std::size_t a = 0; a < 3 && count; ++a)
                 EXPECT_NEAR(b.center[a], static_cast<double>(sum[a] / count * 0.02L), 1e-9);
-            }
         }
     }
     EXPECT_TRUE(mass_properties(*device, SolidCells{}, 0, {}).empty());
@@ -119,9 +114,8 @@ TEST_P(Bodies, TouchingPairsMatchASearch) {
                         p[axis] += sign;
                         const auto found = at.find(p);
                         if (found == at.end()) continue;
-                        if (label >= 0 && found->second > label) {
+                        if (label >= 0 && found->second > label)
                             ++want[{label, found->second}][axis * 2 + (sign > 0)];
-                        }
                         break;
                     }
                 }
@@ -214,6 +208,63 @@ TEST(Footings, SignedDistances) {
     EXPECT_LE(footing(std::vector<std::array<double, 2>>{{0, 0}, {1, 0}}, 0.5, 0).margin_m, 0);
     const auto hull = convex_polygon({{0, 0}, {1, 0}, {2, 0}, {2, 1}, {0, 1}, {1, 0.5}, {0, 0}});
     EXPECT_EQ(hull, square);
+}
+
+using Corners = std::vector<std::array<double, 2>>;
+
+TEST(SmallestRectangle, OfATurnedRectangleIsItself) {
+    const double c = std::cos(0.7), s = std::sin(0.7);
+    Corners polygon;
+    for (const auto& [x, y] : {std::array{-2.0, -0.5}, {2.0, -0.5}, {2.0, 0.5}, {-2.0, 0.5}})
+        polygon.push_back({3 + c * x - s * y, 1 + s * x + c * y});
+    const Rectangle r = smallest_rectangle(polygon);
+    EXPECT_NEAR(r.area(), 4, 1e-12);
+    EXPECT_NEAR(r.middle[0], 3, 1e-12);
+    EXPECT_NEAR(r.middle[1], 1, 1e-12);
+    EXPECT_NEAR(std::abs(r.axes[0][0] * c + r.axes[0][1] * s), 1, 1e-12);
+    EXPECT_NEAR(r.half[0], 2, 1e-12);
+    EXPECT_NEAR(r.half[1], 0.5, 1e-12);
+}
+
+// Of all turns of a box around a triangle none is smaller.
+TEST(SmallestRectangle, NoTurnIsSmaller) {
+    const Corners triangle{{0, 0}, {3, 0.5}, {1, 2}};
+    const double least = smallest_rectangle(triangle).area();
+    for (int n = 0; n < 900; ++n) {
+        const double angle = 1e-3 * n * 3.1416 / 1.8, c = std::cos(angle), s = std::sin(angle);
+        double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
+        for (const auto& [x, y] : triangle) {
+            const double at[2] = {c * x + s * y, c * y - s * x};
+            for (int a = 0; a < 2; ++a) {
+                low[a] = std::min(low[a], at[a]);
+                high[a] = std::max(high[a], at[a]);
+            }
+        }
+        EXPECT_GE((high[0] - low[0]) * (high[1] - low[1]), least - 1e-9);
+    }
+}
+
+TEST(SmallestRectangle, WithoutAnAreaThereIsNone) {
+    EXPECT_EQ(smallest_rectangle(Corners{}).area(), 0);
+    EXPECT_EQ(smallest_rectangle(Corners{{1, 2}}).area(), 0);
+    EXPECT_EQ(smallest_rectangle(Corners{{1, 2}, {2, 2}}).area(), 0);
+}
+
+TEST(Weld, KeepsTheFirstOfPointsThatAreAllButTheSame) {
+    const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1e-4, 0, 0}, {1, 0, 2e-3}, {1, 1e-4, 0}};
+    const std::vector<Vec3> kept{{0, 0, 0}, {1, 0, 0}, {1, 0, 2e-3}};
+    EXPECT_EQ(merge_close_points(points, 1e-3), kept);
+    EXPECT_EQ(merge_close_points(points, 1e-6), points);
+    EXPECT_TRUE(merge_close_points({}, 1e-3).empty());
+}
+
+// Two points may be close and yet in different cells of whatever grid finds them.
+TEST(Weld, DoesNotDependOnWherePointsLie) {
+    for (int n = -50; n < 50; ++n) {
+        const double x = 0.00137 * n;
+        EXPECT_EQ(merge_close_points({{x, -x, x}, {x + 5e-4, -x, x - 5e-4}}, 1e-3).size(), 1u) << n;
+        EXPECT_EQ(merge_close_points({{x, -x, x}, {x + 1.1e-3, -x, x}}, 1e-3).size(), 2u) << n;
+    }
 }
 
 }  // namespace

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "physics/hull_landscape.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
+#include "errors.h"
 #include "host/physics/hulls.h"
-#include "physics/landscape.h"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -293,12 +288,10 @@ TEST(HullLandscape, AllTriplesAndPairsAgree) {
         const test::Criticals truth = test::critical_poses(hull);
         ASSERT_EQ(landscape.poses.size(), truth.minima.size());
         ASSERT_EQ(landscape.passes.size(), truth.passes.size());
-        for (std::size_t n = 0; n < truth.minima.size(); ++n) {
+        for (std::size_t n = 0; n < truth.minima.size(); ++n)
             expect_close(landscape.poses[n].height_m, truth.minima[n]);
-        }
-        for (std::size_t n = 0; n < truth.passes.size(); ++n) {
+        for (std::size_t n = 0; n < truth.passes.size(); ++n)
             expect_close(landscape.passes[n].height_m, truth.passes[n]);
-        }
     }
 }
 
@@ -353,20 +346,14 @@ TEST(HullLandscape, TurningMovingAndScalingChangeNothing) {
 
 std::string refusal(const std::vector<Vec3>& points, const Vec3& center = {0.1, 0.1, 0.1},
                     const HullOptions& options = {}) {
-    try {
-        hull_landscape(points, center, options);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        return error.what();
-    }
-    return "nothing refused";
+    return test::message_of([&] { hull_landscape(points, center, options); }, ErrorKind::input);
 }
 
 TEST(HullLandscape, RefusesWhatIsNoSolid) {
     using ::testing::HasSubstr;
     const double nan = std::nan(""), huge = std::numeric_limits<double>::max();
     const std::vector<Vec3> corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    EXPECT_EQ(refusal(corner), "nothing refused");
+    EXPECT_EQ(refusal(corner), "nothing was thrown");
     EXPECT_THAT(refusal({}), HasSubstr("0 points"));
     EXPECT_THAT(refusal({corner[0], corner[1], corner[2]}), HasSubstr("takes four"));
     EXPECT_THAT(refusal(std::vector<Vec3>(9, Vec3{1, 2, 3})), HasSubstr("are one point"));

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <vector>
-
 #include "core/vectors.h"
 #include "host/physics/solids.h"
 #include "lab/random.h"

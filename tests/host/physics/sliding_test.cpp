@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "physics/sliding.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "device/devices.h"
 #include "host/physics/solids.h"
+#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::physics {

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <numbers>
-#include <vector>
-
 #include "physics/bodies.h"
 #include "physics/landscape.h"
 #include "physics/tipping.h"
+#include "standard.h"
 
 // Analytic solids, as voxels and as exact vertex sets, for tests.
 namespace topple::test {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <vector>
-
 #include "graph/contact_graph.h"
 #include "graph/stable_objects.h"
 #include "host/safety/room.h"

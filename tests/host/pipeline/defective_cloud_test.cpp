@@ -1,10 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numeric>
-#include <string>
-
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
 

@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "topple/frames_view.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <limits>
 #include <new>
-#include <set>
-#include <string>
-#include <vector>
 
-#include "host/io/files.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_walk.h"
 #include "lab/scan/files.h"
@@ -76,16 +66,6 @@ class FramesViews : public Files {
             EXPECT_EQ(got.objects[n].mass_kg, expected.objects[n].mass_kg);
         }
     }
-    std::string refusal(const FramesView& frames, ErrorKind kind = ErrorKind::input) const {
-        try {
-            parse(frames, quick());
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), kind);
-            return error.what();
-        }
-        return "parsed";
-    }
-
     static const scenes::Sequence* walk_;
     std::vector<std::vector<Rgb>> pictures_;
 };
@@ -158,32 +138,18 @@ TEST_F(FramesViews, EndWhereTheyAreCancelledOrWouldTakeTooMuch) {
     };
     int polls = 0;
     options.cancelled = [&] { return ++polls > 4; };
-    try {
-        parse(view(), options);
-        ADD_FAILURE();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::cancelled);
-    }
+    message_of([&] { parse(view(), options); }, ErrorKind::cancelled);
     EXPECT_EQ(stages, std::vector<std::string>{"ingest"});
     // Before they are fused, while they are, and once they are.
     for (const auto& [bytes, text] :
          {std::pair{1u << 20, "frames: to fuse 6 depth frames takes at least"},
-          {63'000'000u,
-           "frames: the surfaces of 6 depth frames take more than the 60.1 MiB of "
-           "ParseOptions::max_memory_bytes; "
-           "allow more, or give fewer frames; at the depth_scale of the intrinsics, 1000, the "},
-          {270u << 20,
-           " of ParseOptions::max_memory_bytes: allow that much, or use a larger "
-           "ParseOptions::voxel_m"}}) {
+          {63'000'000u, "than the 60.1 MiB of ParseOptions::max_memory_bytes; allow more, or give"},
+          {270u << 20, " of ParseOptions::max_memory_bytes: allow that much, or use a larger"}}) {
         options = quick();
         options.max_memory_bytes = bytes;
-        try {
-            parse(view(), options);
-            ADD_FAILURE() << bytes;
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
-            EXPECT_EQ(std::string(error.what()).find("--"), std::string::npos);
-        }
+        const std::string said = message_of([&] { parse(view(), options); }, ErrorKind::input);
+        EXPECT_THAT(said, testing::HasSubstr(text));
+        EXPECT_THAT(said, testing::Not(testing::HasSubstr("--")));
     }
     options = quick();
     options.unit_m = 0.001;
@@ -208,98 +174,67 @@ TEST_F(FramesViews, WhatTheCallersFunctionsThrowComesOutUnchanged) {
 }
 
 TEST_F(FramesViews, ThatMakeNoSenseAreRefused) {
-    EXPECT_EQ(refusal({}), "frames: there are none: images is empty");
-    FramesView wrong = view();
+    FramesView wrong;
+    const auto refused = [&](const char* says, ErrorKind kind = ErrorKind::input) {
+        EXPECT_THAT(message_of([&] { parse(wrong, quick()); }, kind), testing::HasSubstr(says));
+        wrong = view();
+    };
+    refused("frames: there are none: images is empty");
+    const std::uint16_t* depth = walk_->frames[2].depth.data();
     wrong.source = "head";
-    wrong.images[2].depth = {walk_->frames[2].depth.data(), 72, 96};
-    EXPECT_EQ(refusal(wrong),
-              "head: frame 2: depth is 72 x 96 pixels, but the intrinsics say 96 x 72");
+    wrong.images[2].depth = {depth, 72, 96};
+    refused("head: frame 2: depth is 72 x 96 pixels, but the intrinsics say 96 x 72");
     wrong.images[2].depth = {nullptr, 96, 72};
-    EXPECT_EQ(refusal(wrong), "head: frame 2: depth is a null pointer");
-    wrong.images[2].depth = {walk_->frames[2].depth.data(), 96, 72, 96};
-    EXPECT_EQ(refusal(wrong),
-              "head: frame 2: depth: its rows lie 96 bytes apart, but each takes 192");
-    wrong.images[2].depth = {walk_->frames[2].depth.data(), 96, 72,
-                             std::numeric_limits<std::ptrdiff_t>::max()};
-    EXPECT_NE(refusal(wrong).find("bytes apart"), std::string::npos);
+    refused("frame 2: depth is a null pointer");
+    wrong.images[2].depth = {depth, 96, 72, 96};
+    refused("frame 2: depth: its rows lie 96 bytes apart, but each takes 192");
+    wrong.images[2].depth = {depth, 96, 72, std::numeric_limits<std::ptrdiff_t>::max()};
+    refused("bytes apart");
     wrong.images[2] = {};
-    EXPECT_EQ(refusal(wrong),
-              "head: frame 2: neither of depth and depth_m given; give one of both");
-
-    wrong = view();
+    refused("frame 2: neither of depth and depth_m given; give one of both");
     const std::vector<float> millimetres(96 * 72, 1500.0f);
     wrong.images[1] = {{}, {millimetres.data(), 96, 72}, {}};
-    EXPECT_EQ(refusal(wrong),
-              "frames: frame 1: all readings of depth_m lie beyond 65.535 m, the farthest at a "
-              "depth_scale of 1000; give metres, or a smaller depth_scale");
+    refused("frame 1: all readings of depth_m lie beyond 65.535 m, the farthest at a depth_scale");
     const std::vector<std::uint16_t> none(96 * 72);
-    wrong = view();
     for (FrameView& image : wrong.images) image.depth = {none.data(), 96, 72};
-    EXPECT_EQ(refusal(wrong), "frames: no points were found; 6 depth frames without any reading");
-    wrong = view();
+    refused("no points were found; 6 depth frames without any reading");
     wrong.images[5].colour = {pictures_[5].data(), 144, 192};
-    EXPECT_EQ(refusal(wrong),
-              "frames: frame 5: colour is 144 x 192 pixels, but the depth images are 96 x 72, of "
-              "other proportions; give colour_intrinsics");
-
-    wrong = view();
+    refused("frame 5: colour is 144 x 192 pixels, but the depth images are 96 x 72");
     wrong.camera_to_world[4][3] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(refusal(wrong), "frames: frame 4: camera_to_world: nan is not a finite number");
-    wrong = view();
+    refused("frame 4: camera_to_world: nan is not a finite number");
     for (std::size_t k = 0; k < 3; ++k) wrong.camera_to_world[0][4 * k] *= -1;
-    EXPECT_NE(refusal(wrong).find("frame 0: camera_to_world: the matrix is no rotation"),
-              std::string::npos);
-    wrong = view();
+    refused("frame 0: camera_to_world: the matrix is no rotation");
     for (Mat4& pose : wrong.camera_to_world)
         for (std::size_t axis = 0; axis < 3; ++axis) pose[4 * axis + 3] *= 1000;
-    EXPECT_TRUE(refusal(wrong).ends_with(
-        " m from one frame to the next: places of poses are metres; if these are mm, multiply "
-        "them by 0.001"))
-        << refusal(wrong);
-    wrong = view();
+    refused("places of poses are metres; if these are mm, multiply them by 0.001");
     wrong.intrinsics.depth_scale = 1;
-    EXPECT_TRUE(
-        refusal(wrong).starts_with("frames: at the depth_scale of the intrinsics, 1, the readings "
-                                   "of 6 depth frames lie about"))
-        << refusal(wrong);
-    EXPECT_TRUE(
-        refusal(wrong).ends_with(" m apart, more than the 0.25 m at which surfaces can be found"));
-    wrong = view();
+    refused("at the depth_scale of the intrinsics, 1, the readings of 6 depth frames lie about");
     wrong.camera_to_world[3][15] = 0;
-    EXPECT_NE(refusal(wrong).find("the last row"), std::string::npos);
-    wrong = view();
+    refused("the last row");
     wrong.camera_to_world[3][3] = 2e6;
-    EXPECT_NE(refusal(wrong).find("frame 3: camera_to_world: position 2e+06"), std::string::npos);
+    refused("frame 3: camera_to_world: position 2e+06");
     wrong.camera_to_world.pop_back();
-    EXPECT_EQ(refusal(wrong),
-              "frames: there are 5 poses for 6 images; camera_to_world must have "
-              "one for each");
+    refused("there are 5 poses for 6 images");
     wrong.camera_to_world.clear();
-    EXPECT_NE(refusal(wrong).find("6 images but no poses"), std::string::npos);
-    wrong = view();
+    refused("6 images but no poses");
     wrong.image = [](std::size_t) { return FrameView{}; };
-    EXPECT_NE(refusal(wrong, ErrorKind::usage).find("give one of both"), std::string::npos);
-
+    refused("give one of both", ErrorKind::usage);
     for (const auto& [member, value] : {std::pair{&Intrinsics::fx, 0.0},
                                         {&Intrinsics::fy, std::nan("")},
                                         {&Intrinsics::cx, 1e4},
                                         {&Intrinsics::cy, -1.0},
                                         {&Intrinsics::depth_scale, 0.0}}) {
-        wrong = view();
         wrong.intrinsics.*member = value;
-        EXPECT_EQ(refusal(wrong).substr(0, 20), "frames: intrinsics: ");
-        wrong = view();
+        refused("frames: intrinsics: ");
+        if (member == &Intrinsics::depth_scale) continue;
         wrong.colour_intrinsics = wrong.intrinsics;
         (*wrong.colour_intrinsics).*member = value;
-        if (member != &Intrinsics::depth_scale) {
-            EXPECT_EQ(refusal(wrong).substr(0, 27), "frames: colour_intrinsics: ");
-        }
+        refused("frames: colour_intrinsics: ");
     }
-    wrong = view();
     wrong.intrinsics.width = 0;
-    EXPECT_NE(refusal(wrong).find("\"width\" is 0"), std::string::npos);
+    refused("\"width\" is 0");
     wrong.intrinsics.width = wrong.intrinsics.height = 30000;
-    EXPECT_NE(refusal(wrong).find("30000 x 30000 pixels, more than"), std::string::npos);
+    refused("30000 x 30000 pixels, more than");
 }
 
 }  // namespace

@@ -4,12 +4,15 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
-#include <cmath>
-#include <map>
-#include <string>
 
+#include "device/devices.h"
 #include "export/object_surfaces.h"
-#include "host/io/files.h"
+#include "host/pipeline/scan.h"
+#include "host/pipeline/small_room.h"
+#include "host/solids/boxes.h"
+#include "objects/object_boxes.h"
+#include "solids/boundary.h"
+#include "topple/object_at.h"
 
 namespace topple {
 namespace {
@@ -50,9 +53,7 @@ TEST_F(ObjectsGlb, each_object_is_a_closed_mesh_around_its_voxels) {
                 return static_cast<float>(h *
                                           (r[0][d] * at[0] + r[1][d] * at[1] + r[2][d] * at[2]));
             };
-            cloud.x.push_back(along(0));
-            cloud.y.push_back(along(1));
-            cloud.z.push_back(along(2));
+            test::add(cloud, along(0), along(1), along(2));
             label.push_back(primitive);
         }
     };
@@ -116,9 +117,7 @@ TEST_F(ObjectsGlb, colours_are_the_scans_where_it_has_any) {
     Scene scene;
     for (int i = 0; i < 9; ++i) {
         for (const int j : {0, 1}) {
-            cloud.x.push_back(0.1f * static_cast<float>(i) + 0.05f);
-            cloud.y.push_back(j == 0 ? 0.05f : 0.15f);
-            cloud.z.push_back(0.05f);
+            test::add(cloud, 0.1f * static_cast<float>(i) + 0.05f, j == 0 ? 0.05f : 0.15f, 0.05f);
             label.push_back(j);
             scene.points.object.push_back(j);
             scene.points.red.push_back(j == 0 && i < 2 ? 200 : 0);
@@ -157,6 +156,114 @@ TEST_F(ObjectsGlb, colours_are_the_scans_where_it_has_any) {
     const aiMesh& other = *read->mMeshes[read->mRootNode->mChildren[1]->mMeshes[0]];
     ASSERT_TRUE(other.HasVertexColors(0));
     EXPECT_NEAR(other.mColors[0][0].r, 0.162, 2e-3) << "by unsafety";
+}
+
+}  // namespace
+}  // namespace topple
+
+// From a place to the object there.
+namespace topple::test {
+namespace {
+
+ParseResult three_points() {
+    ParseResult result;
+    result.scene.points.x = {0, 1, 3, 2};
+    result.scene.points.y = result.scene.points.z = {0, 0, 0, 0};
+    result.scene.points.object = {4, 7, 7, -1};
+    return result;
+}
+
+TEST(ObjectAt, IsThatOfTheNearestPointOfOne) {
+    const ParseResult result = three_points();
+    EXPECT_EQ(object_at(result, {0.4, 0, 0}, 0.5), 4);
+    EXPECT_EQ(object_at(result, {0.5, 0, 0}, 0.5), 4) << "of two as near the earlier";
+    EXPECT_EQ(object_at(result, {0.6, 0, 0}, 0.5), 7);
+    EXPECT_EQ(object_at(result, {2, 0, 0}, 1), 7) << "what belongs to nothing doesn't count";
+    EXPECT_EQ(object_at(result, {0, 0.3, 0.4}, 0.5), 4);
+    EXPECT_EQ(object_at(result, {0, 0.3, 0.4}, 0.49), -1);
+    EXPECT_EQ(object_at(result, {0, 0, 0}, 0), 4);
+    EXPECT_EQ(object_at(result, {1e9, 0, 0}, INFINITY), 7);
+    EXPECT_EQ(object_at(ParseResult{}, {0, 0, 0}, INFINITY), -1);
+}
+
+std::string refusal_at(const ParseResult& result, const Vec3& place, double within_m) {
+    return message_of([&] { object_at(result, place, within_m); }, ErrorKind::usage);
+}
+
+TEST(ObjectAt, RefusesWhatMakesNoSense) {
+    ParseResult result = three_points();
+    EXPECT_EQ(
+        refusal_at(result, {0, NAN, 0}, 1),
+        "object_at: place_m (0, nan, 0): expected metres in the frame of the result's points, "
+        "all finite");
+    EXPECT_EQ(refusal_at(result, {0, 0, 0}, -1),
+              "object_at: within_m -1: expected metres from 0 on");
+    EXPECT_THAT(refusal_at(result, {0, 0, 0}, NAN), testing::HasSubstr("within_m nan"));
+    result.scene.points.x.clear();
+    EXPECT_THAT(refusal_at(result, {0, 0, 0}, 1), testing::HasSubstr("add_coordinates()"));
+}
+
+TEST(ObjectAt, OfAParsedRoom) {
+    const SmallRoom room = SmallRoom::scattered();
+    ParseOptions options = on(device::open_device("native"));
+    options.disturbances = {};
+    const ParseResult result = parse(room.cloud, options);
+    const std::int32_t floor = object_at(result, {0.4, 0.4, 0}, 0.05),
+                       crate = object_at(result, {1.05, 0.95, 0.5}, 0.05),
+                       box = object_at(result, {1.3, 1.2, 0.85}, 0.05);
+    ASSERT_GE(floor, 0);
+    ASSERT_GE(crate, 0);
+    ASSERT_GE(box, 0);
+    EXPECT_TRUE(result.scene.objects[floor].grounded);
+    EXPECT_NE(crate, floor);
+    EXPECT_NE(box, crate);
+    EXPECT_EQ(object_at(result, {1.3, 1.2, 1.2}, 0.05), -1) << "in the air";
+}
+
+}  // namespace
+}  // namespace topple::test
+
+namespace topple {
+namespace {
+
+// Two boxes that follow the grid and stand anywhere on it, of which all sides were seen.
+TEST(ObjectBoxes, reach_from_surface_to_surface) {
+    constexpr double voxel = 0.02;
+    const auto device = device::open_native();
+    for (const double shift : {0.0, 0.0037, 0.0113}) {
+        SCOPED_TRACE(shift);
+        const std::vector<solids::Box> boxes{{{0.31 + shift, -0.2, 0.5}, {0.05, 0.08, 0.12}},
+                                             {{0.8, -0.2 + shift, 0.5}, {0.03, 0.05, 0.04}}};
+        const solids::Scanned scanned = solids::scan(boxes, voxel);
+        BoundaryCells boundary = solids::find_boundary(*device, scanned.cells, scanned.seen(),
+                                                       scanned.patches, {false, false});
+        const std::vector<std::int32_t> own{0, 1}, one{0, 0};
+        const SolidScene solids(scanned.cells, {Role::none, Role::none}, {}, boundary);
+        const std::vector<ObjectBox> found = object_boxes(solids, own, 2);
+        for (std::size_t o = 0; o < 2; ++o) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                const auto axis = static_cast<int>(a);
+                EXPECT_NEAR(found[o].size_m[a], 2 * boxes[o].half[axis], 1e-4)
+                    << "box " << o << ", axis " << a;
+                EXPECT_NEAR(found[o].middle_m[a], boxes[o].middle[axis], 1e-4)
+                    << "box " << o << ", axis " << a;
+            }
+            EXPECT_NEAR(found[o].top_m(), boxes[o].middle[2] + boxes[o].half[2], 1e-4);
+        }
+        const ObjectBox both = object_boxes(solids, one, 1)[0];
+        EXPECT_NEAR(both.size_m[0], 0.8 + 0.03 - (0.31 + shift - 0.05), 1e-4);
+        EXPECT_NEAR(both.middle_m[0], (0.8 + 0.03 + 0.31 + shift - 0.05) / 2, 1e-4);
+        // Where nothing is known within voxels they count whole.
+        const SolidScene coarse(scanned.cells, {Role::none, Role::none});
+        const Vec3 whole = object_boxes(coarse, own, 2)[0].size_m;
+        for (std::size_t a = 0; a < 3; ++a) {
+            EXPECT_GE(whole[a], 2 * boxes[0].half[static_cast<int>(a)]);
+            EXPECT_LE(whole[a], 2 * boxes[0].half[static_cast<int>(a)] + 2.01 * voxel);
+        }
+        const ObjectBox nothing = object_boxes(solids, own, 3)[2];  // an object without voxels
+        EXPECT_EQ(nothing.size_m, Vec3{});
+        EXPECT_TRUE(std::isnan(nothing.middle_m[0]));
+    }
 }
 
 }  // namespace

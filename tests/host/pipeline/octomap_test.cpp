@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
-#include <cmath>
-#include <cstdlib>
 
 #include "host/io/octomap_files.h"
 #include "host/pipeline/scan.h"

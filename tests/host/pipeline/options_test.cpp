@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <string>
-
-#include "host/io/files.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
+#include "points/scale_checks.h"
+#include "points/voxel_size.h"
 #include "scale/estimate.h"
 #include "topple/frame_labels.h"
-#include "topple/parse.h"
 
 // Options that make no sense are told before anything is parsed, and doubtful ones with the result.
 namespace topple::test {
@@ -18,13 +12,7 @@ namespace {
 
 template <class Call>
 std::string refusal_of(const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::usage);
-        return error.what();
-    }
-    return "taken";
+    return message_of(call, ErrorKind::usage);
 }
 
 // `began`: what would show that a stage had begun.
@@ -126,3 +114,101 @@ TEST_F(OptionsOfFiles, APeakIsAskedAboutOfAFile) {
 
 }  // namespace
 }  // namespace topple::test
+
+namespace topple {
+namespace {
+
+// The voxels of a level square of this edge.
+double voxel_for_square(double cell_m, double edge_m, double points,
+                        std::uint64_t max_memory_bytes) {
+    const auto edge = static_cast<float>(edge_m);
+    return voxel_for_scan(cell_m, edge_m * edge_m, {{0, 0, 0}, {edge, edge, 0.05f}}, points,
+                          max_memory_bytes);
+}
+
+TEST(VoxelSize, DenseScansGetFinerVoxelsThanRooms) {
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.002, 5, 1e6, 0), 0.005);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.01, 5, 1e6, 0), 0.02);
+}
+
+TEST(VoxelSize, SparseRoomsGetThoseOfRooms) {
+    for (const double cell : {0.02, 0.03, 0.06})
+        EXPECT_DOUBLE_EQ(voxel_for_square(cell, 8, 1e4, 0), 0.02) << cell;
+}
+
+TEST(VoxelSize, HallsGetLargerOnesButNoneWithoutGaps) {
+    // 45 x 45 m: five million voxels of 2 cm, two of 3 cm.
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.04, 45, 1e6, 0), 0.03);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.012, 45, 1e6, 0), 0.03);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.01, 45, 1e6, 0), 0.02);
+}
+
+TEST(VoxelSize, MemoryMakesThemLarger) {
+    const double free = voxel_for_square(0.06, 8, 1e5, 0),
+                 tight = voxel_for_square(0.06, 8, 1e5, 550 << 20);
+    EXPECT_DOUBLE_EQ(free, 0.02);
+    EXPECT_DOUBLE_EQ(tight, 0.03);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.06, 8, 1e5, 1), voxel_for_cell(0.06));
+}
+
+TEST(VoxelSize, WhatIsAskedForOrKnownWins) {
+    Observation input;
+    input.cell_m = 0.02;
+    ParseOptions options;
+    EXPECT_DOUBLE_EQ(voxel_for_input(input, options), 0.02);
+    input.voxel_m = 0.08;
+    EXPECT_DOUBLE_EQ(voxel_for_input(input, options), 0.08);
+    options.voxel_m = 0.05;
+    EXPECT_DOUBLE_EQ(voxel_for_input(input, options), 0.05);
+}
+
+// Corners and middles of a box.
+PointCloud box(double x, double y, double z) {
+    PointCloud out;
+    for (int n = 0; n < 27; ++n)
+        test::add(out, x * (n % 3) / 2, y * (n / 3 % 3) / 2, z * (n / 9) / 2);
+    return out;
+}
+
+// Rooms and small parts in other units than metres are told before the work; those in metres, and
+// buildings as dense as scans are, are not.
+TEST(UnitHint, by_size_and_spacing) {
+    const struct {
+        const char* what;
+        Vec3 size;
+        double spacing;
+        ScanOrigin origin;
+        const char* hint;  // null: none
+    } cases[] = {
+        {"a cube of 20 mm",
+         {20, 20, 20},
+         INFINITY,
+         ScanOrigin::mesh_file,
+         "unit_m = 0.001 (0.020 m)"},
+        {"a room in mm",
+         {4000, 3000, 2500},
+         INFINITY,
+         ScanOrigin::mesh_file,
+         "unit_m = 0.001 (4.0 m)"},
+        {"in cm", {400, 300, 250}, INFINITY, ScanOrigin::mesh_file, "unit_m = 0.01 (4.0 m)"},
+        {"in inches", {157, 118, 98}, 0.2, ScanOrigin::cloud_file, "unit_m = 0.0254 (4.0 m)"},
+        {"in feet", {13, 10, 8.2}, 0.03, ScanOrigin::cloud_file, "unit_m = 0.3048 (4.0 m)"},
+        {"in memory", {13, 10, 8.2}, 0.03, ScanOrigin::cloud_in_memory, "by 0.3048 (4.0 m)"},
+        {"a room", {4, 3, 2.5}, INFINITY, ScanOrigin::mesh_file, nullptr},
+        {"a hall", {25, 20, 4.5}, 0.03, ScanOrigin::cloud_file, nullptr},
+        {"a building", {60, 40, 12}, 0.01, ScanOrigin::cloud_file, nullptr},
+        {"a map", {60, 40, 12}, 0.05, ScanOrigin::map_file, nullptr},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.what);
+        const PointCloud cloud = box(c.size[0], c.size[1], c.size[2]);
+        const std::string hint = unit_hint(cloud, c.spacing, c.origin);
+        if (c.hint)
+            EXPECT_NE(hint.find(c.hint), std::string::npos) << hint;
+        else
+            EXPECT_EQ(hint, "");
+    }
+}
+
+}  // namespace
+}  // namespace topple

@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <array>
-#include <cmath>
-#include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
-#include <set>
 
 #include "host/pipeline/scan.h"
 
@@ -45,9 +39,8 @@ void check_head(const Json& scene) {
     }
     EXPECT_EQ(m[3], Json({0.0, 0.0, 0.0, 1.0}));
     EXPECT_FALSE(scene.at("timings_s").empty());
-    for (const auto& [stage, seconds] : scene.at("timings_s").items()) {
+    for (const auto& [stage, seconds] : scene.at("timings_s").items())
         EXPECT_GE(seconds.get<double>(), 0) << stage;
-    }
 }
 
 void check_primitives(const Json& scene) {

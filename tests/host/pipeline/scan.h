@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <memory>
-#include <string>
-#include <utility>
-
 #include "host/io/files.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"

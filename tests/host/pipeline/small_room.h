@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
+#include "clouds.h"
 #include "core/random.h"
-#include "topple/input.h"
 
 // A cloud small enough to be parsed in a second, and spoilt in many ways.
 namespace topple::test {
@@ -48,9 +43,7 @@ struct SmallRoom {
     }
 
     void add(const Vec3& p, std::int32_t of) {
-        cloud.x.push_back(static_cast<float>(p[0]));
-        cloud.y.push_back(static_cast<float>(p[1]));
-        cloud.z.push_back(static_cast<float>(p[2]));
+        test::add(cloud, p[0], p[1], p[2]);
         part.push_back(of);
     }
     // Random points on all faces, `density(face's part, point)` per square metre, `most` at most.

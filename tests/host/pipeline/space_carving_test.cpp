@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "solids/space_carving.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
-#include <memory>
-#include <utility>
-#include <vector>
 
+#include "clouds.h"
+#include "errors.h"
+#include "objects/find_hidden_walls.h"
 #include "topple/device.h"
 #include "topple/error.h"
 
@@ -47,15 +45,11 @@ class Carving : public testing::Test {
         Observation input;
         for (int x = -20; x < 20; ++x)
             for (int y = -20; y < 20; ++y) {
-                input.own.x.push_back(static_cast<float>(x) * 0.05f + 0.02f);
-                input.own.y.push_back(static_cast<float>(y) * 0.05f + 0.02f);
-                input.own.z.push_back(2.02f);
+                test::add(input.own, static_cast<float>(x) * 0.05f + 0.02f,
+                          static_cast<float>(y) * 0.05f + 0.02f, 2.02f);
             }
-        for (int z = 0; z < 20; ++z) {
-            input.own.x.push_back(-0.98f);
-            input.own.y.push_back(-0.98f);
-            input.own.z.push_back(static_cast<float>(z) * 0.05f + 0.02f);
-        }
+        for (int z = 0; z < 20; ++z)
+            test::add(input.own, -0.98f, -0.98f, static_cast<float>(z) * 0.05f + 0.02f);
         input.cloud = input.own;
         input.cell_m = cell_m;
         frames_ = wall.get();
@@ -112,12 +106,7 @@ TEST_F(Carving, WhatFailsBesideIsToldInTheEnd) {
     auto wall = std::make_unique<Wall>(40);
     wall->broken_from = 20;
     const Observation input = input_of(std::move(wall));
-    try {
-        carved(*device, input);
-        FAIL() << "nothing was thrown";
-    } catch (const Error& error) {
-        EXPECT_STREQ(error.what(), "broken frame");
-    }
+    EXPECT_EQ(test::message_of([&] { carved(*device, input); }, ErrorKind::input), "broken frame");
 }
 
 // Nobody waits for a hundred thousand frames.
@@ -137,6 +126,96 @@ TEST_F(Carving, EndsWithWhatHasNoUseForItAnyMore) {
         EXPECT_EQ(error.kind(), ErrorKind::cancelled);
     }
     EXPECT_LT(frames_->loaded, 50'000u);
+}
+
+constexpr std::int32_t left = 0, right = 1, bookcase = 2;
+
+// Two parts of the wall x = 0, and a bookcase between them that reaches from 0.1 to 0.4 m before
+// it, of which its front and sides were seen.
+class HiddenWall : public testing::Test {
+  protected:
+    // An upright face of constant x, or y, metres.
+    void add_x(std::int32_t primitive, double x, double from_y, double to_y, float nx) {
+        for (double y = from_y; y <= to_y; y += 0.05)
+            for (double z = 0.05; z < 2; z += 0.05) add(primitive, x, y, z, nx, 0);
+    }
+    void add_y(std::int32_t primitive, double y, double from_x, double to_x, float ny) {
+        for (double x = from_x; x <= to_x; x += 0.05)
+            for (double z = 0.05; z < 2; z += 0.05) add(primitive, x, y, z, 0, ny);
+    }
+    physics::HiddenWalls walls() {
+        geometry::sort_by_primitive(parts_.samples);
+        SolidCells cells;
+        cells.voxel_m = 0.02;
+        parts_.solids = std::make_shared<const SolidScene>(
+            std::move(cells), std::vector<Role>{Role::wall, Role::wall, Role::none});
+        const std::vector<std::int32_t> object{0, 0, 1};
+        return find_hidden_walls(parts_, object, {true, true, false});
+    }
+    void seen_scene() {
+        add_x(left, 0, -2, -1.1, 1);
+        add_x(right, 0.02, 1.1, 2, 1);
+        add_bookcase();
+    }
+    void add_bookcase() {
+        add_x(bookcase, 0.4, -1, 1, 1);
+        add_y(bookcase, -1, 0.1, 0.4, -1);
+        add_y(bookcase, 1, 0.1, 0.4, 1);
+    }
+
+    SolidParts parts_;
+
+  private:
+    void add(std::int32_t primitive, double x, double y, double z, float nx, float ny) {
+        geometry::SurfaceSamples& s = parts_.samples;
+        test::add(s, x, y, z);
+        s.nx.push_back(nx);
+        s.ny.push_back(ny);
+        s.nz.push_back(0);
+        s.primitive.push_back(primitive);
+    }
+};
+
+TEST_F(HiddenWall, GoesOnBetweenItsSeenParts) {
+    seen_scene();
+    const physics::HiddenWalls found = walls();
+    ASSERT_EQ(found.size(), 1u);
+    for (const double y : {-0.95, 0.0, 0.95}) {
+        const auto by = found.between({0.25, y, 1}, {-0.1, y, 1});
+        ASSERT_TRUE(by) << y;
+        EXPECT_TRUE(*by == left || *by == right);
+    }
+    EXPECT_FALSE(found.between({0.25, 0, 1}, {0.05, 0, 1}));      // before it
+    EXPECT_FALSE(found.between({0.25, 0, 1}, {-0.1, 0, 2.6}));    // over it
+    EXPECT_FALSE(found.between({0.25, 1.5, 1}, {-0.1, 1.5, 1}));  // nothing hides it there
+    EXPECT_FALSE(found.between({-0.5, 0, 1}, {-0.1, 0, 1}));      // both behind it
+    EXPECT_TRUE(found.between({0.25, -3, 1}, {-0.1, 1.2, 1}));    // where the way crosses it
+}
+
+TEST_F(HiddenWall, IsNotBehindWhatWasSeenFromThere) {
+    seen_scene();
+    add_x(bookcase, 0.1, -1, 1, -1);  // its back
+    EXPECT_EQ(walls().size(), 0u);
+}
+
+TEST_F(HiddenWall, NeedsASeenPartBesideTheThing) {
+    add_x(left, 0, -3, -2, 1);
+    add_bookcase();
+    EXPECT_EQ(walls().size(), 0u);
+}
+
+TEST_F(HiddenWall, DoesNotGoThroughAThing) {
+    add_x(left, 0.25, -2, -1.1, 1);
+    add_x(right, 0.25, 1.1, 2, 1);
+    add_bookcase();
+    EXPECT_EQ(walls().size(), 0u);
+}
+
+TEST_F(HiddenWall, IsNotFarBehindAThing) {
+    add_x(left, -1, -2, -1.1, 1);
+    add_x(right, -1, 1.1, 2, 1);
+    add_bookcase();
+    EXPECT_EQ(walls().size(), 0u);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
+#include "standard.h"
 
 namespace topple::test {
 
@@ -21,9 +21,8 @@ inline const std::string clicking = R"(
         const at = seen(wanted);
         if (!at) { out.missed = String(wanted); return; }
         ++clicks;
-        for (const type of ['pointerdown', 'pointerup']) {
+        for (const type of ['pointerdown', 'pointerup'])
             canvas.dispatchEvent(new PointerEvent(type, {...at, ...keys, button: 0, bubbles: true, pointerId: 1}));
-        }
     };
     const press = selector => { ++clicks; document.querySelector(selector).click(); };
     const told = () => JSON.stringify(toppleParts.corrections.document());

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "in_browser.h"
-#include "report/report.h"
 #include "result/scene_json.h"
 #include "synthetic_scene.h"
 
@@ -22,7 +17,7 @@ class Compare : public test::InBrowser {
     std::string write(const Scene& scene) {
         write_report(folder_ / "report.html", scene);
         io::write_scene_json(folder_ / "scene.json", scene);
-        std::string text = Json(read(folder_ / "scene.json")).dump();
+        std::string text = Json(test::bytes_of_file(folder_ / "scene.json")).dump();
         for (auto at = text.find("</"); at != std::string::npos; at = text.find("</"))
             text.replace(at, 2, "<\\/");
         return text;
@@ -66,7 +61,7 @@ TEST_F(Compare, tells_what_became_safer) {
     write_report(folder_ / "before.html", before);
     // As the text of a script.
     const auto literal = [&](const char* file) {
-        std::string text = Json(read(folder_ / file)).dump();
+        std::string text = Json(test::bytes_of_file(folder_ / file)).dump();
         for (auto at = text.find("</"); at != std::string::npos; at = text.find("</"))
             text.replace(at, 2, "<\\/");
         return text;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "report/drawing.h"
 
-#include <gtest/gtest.h>
+#include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
+#include "report/embedded.h"
+#include "report/open_sides.h"
+#include "report/scene_image.h"
 #include "synthetic_scene.h"
+#include "testing.h"
 
 namespace topple::report {
 namespace {
@@ -158,6 +157,190 @@ TEST(Drawings, OfManyPosesShowTheDeepest) {
     const Drawing& poses = titled(all, "Poses");
     EXPECT_EQ(poses.dots.size(), 10u);
     EXPECT_EQ(std::ranges::count(poses.dots, Drawing::Style::now, &Drawing::Dot::style), 1);
+}
+
+// Of base64 and zlib's format.
+std::string inflated(const std::string& text, std::size_t size) {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    unsigned held = 0, bits = 0;
+    for (const char c : text) {
+        if (c == '=') break;
+        held = held << 6 | static_cast<unsigned>(digits.find(c));
+        bits += 6;
+        if (bits < 8) continue;
+        bits -= 8;
+        bytes += static_cast<char>(held >> bits);
+    }
+    std::string out(size + 1, '\0');
+    uLongf length = out.size();
+    EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(out.data()), &length,
+                         reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()),
+              Z_OK);
+    out.resize(length);
+    return out;
+}
+
+TEST(Deflated, is_what_zlib_inflates) {
+    for (const std::string& text : {std::string(), std::string("a"), std::string(70000, 'x')})
+        EXPECT_EQ(inflated(deflated(text), text.size()), text);
+}
+
+// As recordsOf() of the page has it.
+TEST(Deflated, records_are_their_steps) {
+    const std::vector<std::array<std::uint16_t, 2>> records{
+        {0, 65535}, {65535, 0}, {300, 7}, {299, 8}};
+    const std::string bytes = inflated(deflated(records), 16);
+    ASSERT_EQ(bytes.size(), 16u);
+    for (std::size_t c = 0; c < 2; ++c) {
+        std::uint16_t value = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto byte = [&](std::size_t n) {
+                return static_cast<unsigned char>(bytes[8 * c + n]);
+            };
+            const unsigned step = byte(i) | unsigned{byte(4 + i)} << 8;
+            const unsigned sign = step & 1 ? 0xffffu : 0u;
+            value = static_cast<std::uint16_t>(value + ((step >> 1) ^ sign));
+            EXPECT_EQ(value, records[i][c]) << i << ' ' << c;
+        }
+    }
+    const std::vector<std::array<std::int8_t, 1>> small{{-128}, {127}, {-1}};
+    EXPECT_EQ(inflated(deflated(small), 3), "\x80\xff\x80");
+}
+
+TEST(Deflated, plain_numbers_by_low_and_high_bytes) {
+    const std::vector<std::array<std::uint16_t, 3>> records{{1, 2, 0x1203}, {4, 5, 6}};
+    EXPECT_EQ(inflated(deflated_plain(records), 12),
+              std::string("\x01\x02\x03\x04\x05\x06\0\0\x12\0\0\0", 12));
+}
+
+// Scans that are parsed in blocks have no normals.
+Scene without_normals() {
+    Scene scene = test::SyntheticScene(0.05, 0).make();
+    scene.points.nx.clear();
+    scene.points.ny.clear();
+    scene.points.nz.clear();
+    return scene;
+}
+
+TEST(OpenSides, floors_face_up_and_walls_and_ceilings_inwards) {
+    const auto view = pack_view(without_normals());
+    const auto check = [&](const Records& records) {
+        int checked = 0;
+        for (std::size_t i = 0; i < records.cell.size(); ++i) {
+            if (view.groups[records.cell[i][3]].second != 0) continue;
+            Vec3 p;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                p[axis] = view.origin_m[axis] + view.step_m[axis] * records.cell[i][axis];
+            const auto& normal = records.aux[i];
+            const bool amid_x = p[0] > 0.2 && p[0]<3.8, amid_y = p[1]> 0.2 && p[1] < 4.8;
+            if (p[2] < 0 && amid_x && amid_y) {
+                EXPECT_GT(normal[2], 100) << "the floor";
+            }
+            if (p[2] > 2.5 && amid_x && amid_y) {
+                EXPECT_LT(normal[2], -100) << "the ceiling";
+            }
+            if (p[2] < 0.2 || p[2] > 2.3) continue;
+            if (p[0] < 0 && amid_y) {
+                EXPECT_GT(normal[0], 100) << "the wall to the west";
+            }
+            if (p[0] > 4 && amid_y) {
+                EXPECT_LT(normal[0], -100) << "the wall to the east";
+            }
+            if (p[1] < 0 && amid_x) {
+                EXPECT_GT(normal[1], 100) << "the wall to the south";
+            }
+            if (p[1] > 5 && amid_x) {
+                EXPECT_LT(normal[1], -100) << "the wall to the north";
+            }
+            ++checked;
+        }
+        EXPECT_GT(checked, 5000);
+    };
+    check(view.voxels);
+    check(view.points);
+}
+
+// Of cells of 10 cm.
+void face_all(std::vector<Cell>& cells) {
+    CellTable table;
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t n = 0; n < cells.size(); ++n) {
+        table.insert(cells[n].index, n);
+        all.push_back(n);
+    }
+    face_open_sides(cells, table, all, {20, 20, 10}, 0.1);
+}
+
+// Layers of 4 m x 4 m of cells of 10 cm at the given heights, and their normals' third component.
+std::vector<float> facing(const std::vector<std::int32_t>& heights) {
+    std::vector<Cell> cells;
+    for (const std::int32_t z : heights) {
+        for (std::int32_t n = 0; n < 1600; ++n)
+            cells.push_back({.index = {n % 40, n / 40, z}, .background = true});
+    }
+    face_all(cells);
+    std::vector<float> out;
+    for (std::size_t layer = 0; layer < heights.size(); ++layer) {
+        out.push_back(cells[1600 * layer].normal[2]);
+        for (std::size_t n = 0; n < 1600; ++n)
+            EXPECT_EQ(cells[1600 * layer + n].normal[2], out.back()) << heights[layer];
+    }
+    return out;
+}
+
+TEST(OpenSides, of_floors_and_ceilings) {
+    using Faces = std::vector<float>;
+    EXPECT_EQ(facing({0}), (Faces{1})) << "a floor without a ceiling";
+    EXPECT_EQ(facing({0, 25}), (Faces{1, -1}));
+    EXPECT_EQ(facing({0, 25, 26}), (Faces{1, -1, -1})) << "a ceiling's upper side is no floor";
+    EXPECT_EQ(facing({0, 25, 27}), (Faces{1, -1, -1})) << "nor is noise above it";
+    EXPECT_EQ(facing({0, 25, 27, 50}), (Faces{1, -1, 1, -1})) << "two storeys";
+    EXPECT_EQ(facing({0, 25, 50}), (Faces{1, 1, -1})) << "what is both is never cut from above";
+}
+
+TEST(OpenSides, a_cupboard_on_the_wall_leaves_the_ceiling_above_it_a_ceiling) {
+    std::vector<Cell> cells;
+    for (const std::int32_t z : {0, 25}) {
+        for (std::int32_t n = 0; n < 1600; ++n)
+            cells.push_back({.index = {n % 40, n / 40, z}, .background = true});
+    }
+    const std::size_t ceiling = 1600;
+    for (std::int32_t n = 0; n < 60; ++n)
+        cells.push_back({.index = {10 + n % 12, n / 12, 20}, .background = true});
+    face_all(cells);
+    for (std::size_t n = 0; n < 1600; ++n) EXPECT_EQ(cells[ceiling + n].normal[2], -1) << n;
+}
+
+TEST(OpenSides, of_what_stands_out_of_a_ceiling_are_the_ceilings) {
+    std::vector<Cell> cells;
+    for (const std::int32_t z : {0, 25}) {
+        for (std::int32_t n = 0; n < 1600; ++n)
+            cells.push_back({.index = {n % 40, n / 40, z}, .background = true});
+    }
+    const std::size_t noise = cells.size();
+    for (std::int32_t n = 5; n < 35; n += 6) {
+        cells.push_back({.index = {n, n, 26}, .background = true});
+        cells.push_back({.index = {n, 20, 27}, .background = true});
+        cells.push_back({.index = {20, n, 24}, .background = true});
+    }
+    face_all(cells);
+    for (std::size_t n = noise; n < cells.size(); ++n)
+        EXPECT_EQ(cells[n].normal, (std::array<float, 3>{0, 0, -1})) << n - noise;
+}
+
+// From above: what stands on the floor is seen, what lies behind a wall is not.
+TEST(OpenSides, show_what_stands_in_a_room) {
+    Scene scene = without_normals();
+    const auto sees = [&](std::int32_t object) {
+        const auto view = pack_view(scene);
+        return SceneImage(scene, view, 640, 400, {10, 10, 10, 10}).sees(object);
+    };
+    for (const std::int32_t object : {1, 2, 3, 4, 5}) EXPECT_TRUE(sees(object)) << object;
+    for (std::size_t i = 0; i < scene.solid.x.size(); ++i) {
+        if (scene.solid.object[i] == 5) scene.solid.y[i] += 4.6f;
+    }
+    EXPECT_FALSE(sees(5)) << "behind the wall to the north";
 }
 
 }  // namespace

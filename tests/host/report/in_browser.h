@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gmock/gmock.h>
-#include <stdlib.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
-
+#include "host/io/files.h"
 #include "report/report.h"
 
 namespace topple {
@@ -27,29 +18,14 @@ inline std::string text(std::string attribute) {
     return attribute;
 }
 
-class InBrowser : public ::testing::Test {
+class InBrowser : public Files {
   protected:
-    InBrowser() {
-        auto name = (std::filesystem::temp_directory_path() / "topple-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~InBrowser() override {
-        std::error_code error;
-        std::filesystem::remove_all(folder_, error);
-    }
-
     // A browser that is missing skips a test by name, and fails it where everything must run.
     void SetUp() override {
         if (std::system("command -v chromium > /dev/null 2>&1") == 0) return;
         const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");
         if (required && std::string(required) == "1") FAIL() << "chromium is missing";
         GTEST_SKIP() << "chromium is missing: apt-get install chromium";
-    }
-
-    std::string read(const std::filesystem::path& file) const {
-        std::ostringstream out;
-        out << std::ifstream(file, std::ios::binary).rdbuf();
-        return out.str();
     }
 
     // Opens the page in a headless browser, runs `script` once the page is ready, to its end and
@@ -74,7 +50,7 @@ class InBrowser : public ::testing::Test {
     };
     Opened open(const std::filesystem::path& page, const std::string& script = "",
                 const std::string& flags = "", const std::string& link = "") {
-        const Opened opened = shown(read(page) + R"(<script>{
+        const Opened opened = shown(bytes_of_file(page) + R"(<script>{
             const out = document.body.dataset, faults = [], is = (found, expected, why = '') => {
                 if (String(found) !== String(expected)) faults.push(`${found}, not ${expected} ${why}`);
             };
@@ -95,7 +71,7 @@ class InBrowser : public ::testing::Test {
     // `script` says what it found in `out`.
     Opened open_on_phone(const std::filesystem::path& page, const std::string& script) {
         std::string inner =
-            read(page) +
+            bytes_of_file(page) +
             "<script>const out = parent.document.body.dataset; toppleReady.then(async () => {" +
             script + "});</script>";
         std::string escaped;
@@ -130,12 +106,10 @@ class InBrowser : public ::testing::Test {
             " --virtual-time-budget=10000 --dump-dom 'file://" + file.string() + link + "' > '" +
             (folder_ / "dom").string() + "' 2> '" + (folder_ / "log").string() + "'";
         EXPECT_EQ(std::system(command.c_str()), 0);
-        Opened opened{read(folder_ / "dom"), read(folder_ / "log")};
+        Opened opened{bytes_of_file(folder_ / "dom"), bytes_of_file(folder_ / "log")};
         EXPECT_THAT(opened.log, Not(HasSubstr("Uncaught")));
         return opened;
     }
-
-    std::filesystem::path folder_;
 };
 
 }  // namespace topple::test

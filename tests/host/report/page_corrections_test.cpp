@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "clicking.h"
 #include "in_browser.h"
-#include "report/report.h"
 #include "synthetic_scene.h"
 
 // What the report's page takes down of what is wrong in a parse.
@@ -233,7 +227,7 @@ TEST_F(PageCorrections, joins_objects_and_says_what_they_are) {
 // As scene.json has them once a parse has kept to some.
 TEST_F(PageCorrections, keeps_corrections_of_this_parse) {
     write_report(folder_ / "report.html", test::SyntheticScene(0.2).make());
-    auto html = read(folder_ / "report.html");
+    auto html = test::bytes_of_file(folder_ / "report.html");
     const std::string data = "id=\"data\">{";
     html.insert(
         html.find(data) + data.size(),

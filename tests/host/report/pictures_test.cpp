@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "report/pictures.h"
 
-#include <gtest/gtest.h>
 #include <png.h>
-#include <stdlib.h>
 
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
+#include "host/io/files.h"
 #include "report/depth_image.h"
+#include "report/part_spots.h"
 #include "synthetic_scene.h"
 #include "topple/error.h"
 
@@ -97,16 +88,8 @@ TEST(Camera, the_box_fits_into_the_picture_and_fills_it) {
     }
 }
 
-class PicturesOfAScene : public ::testing::Test {
+class PicturesOfAScene : public test::Files {
   protected:
-    PicturesOfAScene() {
-        auto name = (fs::temp_directory_path() / "topple-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~PicturesOfAScene() override {
-        std::error_code error;
-        fs::remove_all(folder_, error);
-    }
     fs::path drawn(const std::string& name, const Scene& scene) {
         fs::create_directory(folder_ / name);
         write_pictures(folder_ / name, scene);
@@ -117,11 +100,6 @@ class PicturesOfAScene : public ::testing::Test {
         for (const auto& entry : fs::directory_iterator(folder))
             out.insert(entry.path().filename().string());
         return out;
-    }
-    static std::string bytes(const fs::path& file) {
-        std::ostringstream out;
-        out << std::ifstream(file, std::ios::binary).rdbuf();
-        return out.str();
     }
     struct Pixels {
         png_uint_32 width = 0, height = 0;
@@ -145,8 +123,6 @@ class PicturesOfAScene : public ::testing::Test {
             count += std::memcmp(&a.rgb[at], &b.rgb[at], 3) != 0;
         return count;
     }
-
-    fs::path folder_;
 };
 
 TEST_F(PicturesOfAScene, are_drawn_the_same_each_time) {
@@ -157,7 +133,7 @@ TEST_F(PicturesOfAScene, are_drawn_the_same_each_time) {
     EXPECT_EQ(names(a), all);
     const Pixels objects = pixels(a / "view-objects.png");
     for (const std::string& name : all) {
-        EXPECT_EQ(bytes(a / name), bytes(b / name)) << name;
+        EXPECT_EQ(test::bytes_of_file(a / name), test::bytes_of_file(b / name)) << name;
         const Pixels picture = pixels(a / name);
         EXPECT_EQ(picture.width, 1280u);
         EXPECT_EQ(picture.height, 800u);
@@ -204,6 +180,61 @@ TEST_F(PicturesOfAScene, show_the_scans_own_colours) {
 
 TEST_F(PicturesOfAScene, can_not_be_written) {
     EXPECT_THROW(write_pictures(folder_ / "missing", Scene{}), Error);
+}
+
+// A level sheet of cells, whose groups are told by x and y.
+template <class Group>
+std::vector<Cell> sheet(int width, int depth, CellTable& table, const Group& group) {
+    std::vector<Cell> cells;
+    for (int y = 0; y < depth; ++y) {
+        for (int x = 0; x < width; ++x) {
+            Cell cell;
+            cell.index = {x, y, 0};
+            cell.group = static_cast<std::uint16_t>(group(x, y));
+            cell.exposed = 32;
+            table.insert(cell.index, static_cast<std::uint32_t>(cells.size()));
+            cells.push_back(cell);
+        }
+    }
+    return cells;
+}
+
+TEST(PartSpots, lie_in_the_middle_of_what_was_seen) {
+    CellTable table;
+    auto cells = sheet(21, 11, table, [](int, int) { return 0; });
+    EXPECT_EQ(cells[inner_cells(cells, table, 1)[0]].index,
+              (std::array<std::int32_t, 3>{10, 5, 0}));
+    for (Cell& cell : cells) cell.completed = cell.index[0] > 4;
+    EXPECT_EQ(cells[inner_cells(cells, table, 1)[0]].index, (std::array<std::int32_t, 3>{2, 5, 0}));
+    for (Cell& cell : cells) cell.completed = true;
+    EXPECT_EQ(cells[inner_cells(cells, table, 1)[0]].index, (std::array<std::int32_t, 3>{10, 5, 0}))
+        << "better than nothing";
+}
+
+// Around a thing that stands on its middle a part still has a place far from that.
+TEST(PartSpots, keep_away_from_other_parts) {
+    CellTable table;
+    const auto within = [](int x, int y) { return x >= 8 && x < 13 && y >= 8 && y < 13; };
+    const auto cells = sheet(21, 21, table, within);
+    const auto spots = inner_cells(cells, table, 3);
+    const auto& outer = cells[spots[0]].index;
+    for (int x = 8; x < 13; ++x)
+        for (int y = 8; y < 13; ++y) EXPECT_GE(std::abs(outer[0] - x) + std::abs(outer[1] - y), 4);
+    EXPECT_EQ(cells[spots[1]].index, (std::array<std::int32_t, 3>{10, 10, 0}));
+    EXPECT_EQ(spots[2], CellTable::absent) << "of a group without cells";
+}
+
+TEST(PartSpots, become_points_of_the_scan) {
+    ScenePoints points;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    points.x = {0.1f, 0.2f, 0.3f, nan, 0.26f};
+    points.y = points.z = {0, 0, 0, 0, 0};
+    points.primitive = {7, 7, 7, 7, 3};
+    const std::vector<std::pair<std::int32_t, std::int32_t>> groups{{-1, -1}, {7, 1}, {9, 2}};
+    const auto places = nearest_points(points, groups, {{}, Vec3{0.25, 0.01, 0}, Vec3{1, 1, 1}});
+    EXPECT_FALSE(places[0]);
+    EXPECT_FLOAT_EQ(float((*places[1])[0]), 0.2f);
+    EXPECT_EQ((*places[2])[0], 1) << "nothing of it was scanned";
 }
 
 }  // namespace

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/report.h"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <string>
-
 #include "in_browser.h"
 #include "report/verified.h"
 #include "synthetic_scene.h"
@@ -26,7 +19,7 @@ class ShownReport : public test::InBrowser {};
 TEST_F(Report, is_one_file_whose_text_can_not_break_out) {
     const auto scene = test::SyntheticScene(0.08).make();
     write_report(folder_ / "report.html", scene, {}, {{}, scene.source});
-    const auto html = read(folder_ / "report.html");
+    const auto html = test::bytes_of_file(folder_ / "report.html");
     EXPECT_NE(html.find("<title>topple: made-up &lt;room&gt; &amp; &quot;hall&quot; "
                         "&lt;/script&gt;&lt;b&gt;.ply</title>"),
               std::string::npos);
@@ -42,9 +35,8 @@ TEST_F(Report, stays_below_15_megabytes) {
     auto scene = test::SyntheticScene(0.02).make();
     // A million loose voxels, all exposed, and two million points with normals.
     for (int i = 0; i < 1000000; ++i) {
-        scene.solid.x.push_back(float(i % 100) * 0.04f);
-        scene.solid.y.push_back(float(i / 100 % 100) * 0.04f);
-        scene.solid.z.push_back(3 + float(i / 10000) * 0.04f);
+        test::add(scene.solid, float(i % 100) * 0.04f, float(i / 100 % 100) * 0.04f,
+                  3 + float(i / 10000) * 0.04f);
         scene.solid.primitive.push_back(i % 9);
         scene.solid.object.push_back(i % 6);
         scene.solid.state.push_back(0);
@@ -60,14 +52,15 @@ TEST_F(Report, stays_below_15_megabytes) {
 TEST_F(Report, takes_what_a_simulator_found) {
     const fs::path file = folder_ / "report.html";
     write_report(file, test::SyntheticScene(0.1).make());
-    const std::string before = read(file);
+    const std::string before = test::bytes_of_file(file);
     EXPECT_NE(before.find("id=\"verified\">null</script>"), std::string::npos);
     EXPECT_TRUE(add_verification(file, R"({"simulator": "</script><b>"})"));
-    EXPECT_NE(read(file).find(R"(id="verified">{"simulator": "\u003c/script>\u003cb>"}</script>)"),
+    EXPECT_NE(test::bytes_of_file(file).find(
+                  R"(id="verified">{"simulator": "\u003c/script>\u003cb>"}</script>)"),
               std::string::npos);
     // A second time it is replaced.
     EXPECT_TRUE(add_verification(file, "null"));
-    EXPECT_EQ(read(file), before);
+    EXPECT_EQ(test::bytes_of_file(file), before);
     std::ofstream(folder_ / "old.html") << "<html></html>";
     EXPECT_FALSE(add_verification(folder_ / "old.html", "null"));
     EXPECT_THROW(add_verification(folder_ / "missing.html", "null"), Error);
@@ -167,9 +160,8 @@ TEST_F(ShownReport, shows_the_scene_in_a_browser) {
         for (let x = 5; x < box.width && !at; x += 5) {
             for (let y = 5; y < box.height && !at; y += 5) if (toppleView.pick(x, y) === 3) at = [x, y];
         }
-        for (const type of ['pointerdown', 'pointerup']) {
+        for (const type of ['pointerdown', 'pointerup'])
             canvas.dispatchEvent(new PointerEvent(type, {clientX: box.left + at[0], clientY: box.top + at[1], button: 0, bubbles: true, pointerId: 1}));
-        }
         out.clicked = text('detail');
         is(toppleView.marker.parts().join(' '), 'middle lands');
         is(document.querySelectorAll('.contacts .contact').length, 1, 'of the monitor\'s part with the table\'s');
@@ -220,9 +212,7 @@ TEST_F(ShownReport, shows_the_scene_in_a_browser) {
     // Faces that look away from the camera, to three of six sides, are left out.
     EXPECT_GT(std::stoi("0" + page.data("triangles")), std::stoi("0" + page.data("faces")) / 2);
     EXPECT_LT(std::stoi("0" + page.data("triangles")), 3 * std::stoi("0" + page.data("faces")) / 2);
-    for (const char* wrong : {"THREE.", "ERR_"}) {
-        EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
-    }
+    for (const char* wrong : {"THREE.", "ERR_"}) EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
     // Three charts' worth of text: the panel of object 3, its curve, the sampler's.
     for (const char* expected :
          {"Object 3", "It tips over.", "Instability S(W)", "class=\"curve\"", "Rests on",
@@ -264,9 +254,7 @@ TEST_F(ShownReport, shows_surfaces_in_a_browser) {
     EXPECT_EQ(page.data("view"), "(none)") << "the 3D view must work";
     EXPECT_EQ(page.data("faces"), "4");
     EXPECT_GT(std::stoi("0" + page.data("pixels")), 2000);
-    for (const char* wrong : {"THREE.", "ERR_"}) {
-        EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
-    }
+    for (const char* wrong : {"THREE.", "ERR_"}) EXPECT_THAT(page.log, Not(HasSubstr(wrong)));
 }
 
 TEST_F(ShownReport, shows_all_on_a_phone) {

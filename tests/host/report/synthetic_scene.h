@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <string>
-#include <utility>
-
+#include "clouds.h"
 #include "safety/action.h"
 #include "topple/scene.h"
 
@@ -170,18 +162,14 @@ class SyntheticScene {
                     const auto p =
                         at((double(i) + 0.5) * h_, (double(j) + 0.5) * h_, (double(k) + 0.5) * h_);
                     auto& s = scene_.solid;
-                    s.x.push_back(float(p[0]));
-                    s.y.push_back(float(p[1]));
-                    s.z.push_back(float(p[2]));
+                    test::add(s, p[0], p[1], p[2]);
                     s.primitive.push_back(id);
                     s.object.push_back(primitive.object);
                     s.state.push_back(surface ? 0 : 1);
                     ++primitive.solid_voxels;
                     if (!surface) continue;
                     auto& q = scene_.points;
-                    q.x.push_back(float(p[0]));
-                    q.y.push_back(float(p[1]));
-                    q.z.push_back(float(p[2]));
+                    test::add(q, p[0], p[1], p[2]);
                     q.nx.push_back(float(n[0]));
                     q.ny.push_back(float(n[1]));
                     q.nz.push_back(float(n[2]));
@@ -221,9 +209,7 @@ class SyntheticScene {
                 for (double y = 0.2; y < 5; y += 0.2) {
                     const auto p = at(x, y, name[0] == 'h' ? 0.9 : 1.5);
                     const auto v = name[0] == 'e' ? at(1, 0, 0) : at(std::sin(y), std::cos(x), 0);
-                    field.x.push_back(float(p[0]));
-                    field.y.push_back(float(p[1]));
-                    field.z.push_back(float(p[2]));
+                    test::add(field, p[0], p[1], p[2]);
                     field.vx.push_back(float(v[0]));
                     field.vy.push_back(float(v[1]));
                     field.vz.push_back(float(v[2]));

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "report/view_data.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <map>
-#include <set>
-
 #include "report/embedded.h"
 #include "report/surface_packer.h"
 #include "synthetic_scene.h"
+#include "testing.h"
 
 namespace topple::report {
 namespace {
@@ -32,9 +24,8 @@ Scene cube_of(int n, double voxel_m) {
     Scene scene;
     scene.voxel_size_m = voxel_m;
     for (int i = 0; i < n * n * n; ++i) {
-        scene.solid.x.push_back(float((i % n + 0.5) * voxel_m - 3));
-        scene.solid.y.push_back(float((i / n % n + 0.5) * voxel_m));
-        scene.solid.z.push_back(float((i / n / n + 0.5) * voxel_m + 1));
+        test::add(scene.solid, (i % n + 0.5) * voxel_m - 3, (i / n % n + 0.5) * voxel_m,
+                  (i / n / n + 0.5) * voxel_m + 1);
         scene.solid.primitive.push_back(3);
         scene.solid.object.push_back(2);
         scene.solid.state.push_back(i % 2 == 0);
@@ -73,9 +64,7 @@ TEST(ViewData, only_voxels_with_an_exposed_face) {
 TEST(ViewData, strays_leave_the_rest_its_steps) {
     Scene scene = cube_of(12, 0.02);
     for (const float far : {1e4f, -2e4f}) {
-        scene.solid.x.push_back(far);
-        scene.solid.y.push_back(1);
-        scene.solid.z.push_back(far);
+        test::add(scene.solid, far, 1, far);
         scene.solid.primitive.push_back(-1);
         scene.solid.object.push_back(-1);
         scene.solid.state.push_back(0);
@@ -264,9 +253,7 @@ TEST(ViewData, colours_of_the_scan_spread_over_what_it_did_not_see) {
     for (std::size_t i = 0; i < scene.solid.x.size(); ++i) {
         const float x = scene.solid.x[i] + 3;
         if (x > 0.03f && x < 0.15f) continue;
-        p.x.push_back(scene.solid.x[i]);
-        p.y.push_back(scene.solid.y[i]);
-        p.z.push_back(scene.solid.z[i]);
+        test::add(p, scene.solid.x[i], scene.solid.y[i], scene.solid.z[i]);
         p.primitive.push_back(3);
         p.object.push_back(scene.solid.object[i]);
         const bool known = p.object.back() == 2;

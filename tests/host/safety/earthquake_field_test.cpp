@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "safety/earthquake/earthquake_field.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "device/devices.h"
 #include "physics/landscape.h"
 #include "room.h"
@@ -13,8 +8,8 @@
 #include "safety/earthquake/ground_motion.h"
 #include "safety/earthquake/made_up_records.h"
 #include "safety/earthquake/rocking.h"
-#include "safety/fields.h"
 #include "safety/objects.h"
+#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::safety {
@@ -135,8 +130,7 @@ class EarthquakeField : public ::testing::Test {
 // A motion that does not go over an edge, or off the support, stays below the barrier, however much
 // energy it has.
 TEST_F(EarthquakeField, WorkReachesTheBarrierExactlyWhereItFalls) {
-    test::Room room(0.02);
-    room.floor(0, 2, 0, 2);
+    test::Room room(0.02, {0, 0}, {2, 2});
     const auto id = static_cast<std::size_t>(room.box(0.8, 1.2, 0.8, 1.2, 0, 0.2, false));
     RiskObject& object = room.objects[id];
     object.barrier_J = 0.01;
@@ -162,8 +156,7 @@ TEST_F(EarthquakeField, WorkReachesTheBarrierExactlyWhereItFalls) {
 }
 
 TEST_F(EarthquakeField, SameSeedSameEvents) {
-    test::Room room(0.02);
-    room.floor(0, 1, 0, 1);
+    test::Room room(0.02, {0, 0}, {1, 1});
     room.thing(0.5, 0.5, 0);
     const auto surroundings = room.surroundings();
     EarthquakeOptions options;
@@ -202,8 +195,7 @@ TEST_F(EarthquakeField, SupportPolygonGivesTheBaseEachWay) {
 
 // A box on a table, nearer to one end.
 TEST_F(EarthquakeField, SupportGoesOnUntilTheTableEnds) {
-    test::Room room(0.02);
-    room.floor(0, 3, 0, 3);
+    test::Room room(0.02, {0, 0}, {3, 3});
     room.box(1, 2, 1, 2, 0.68, 0.7);
     const auto id = static_cast<std::size_t>(room.thing(1.14, 1.5, 0.7));
     const auto surroundings = room.surroundings();
@@ -217,8 +209,7 @@ TEST_F(EarthquakeField, SupportGoesOnUntilTheTableEnds) {
 
 // Its foot hides the 20 cm down to what carries it: heights count from there.
 TEST_F(EarthquakeField, HeightsCountFromWhatCarriesAThing) {
-    test::Room room(0.02);
-    room.floor(0, 3, 0, 3);
+    test::Room room(0.02, {0, 0}, {3, 3});
     const auto id = static_cast<std::size_t>(room.thing(1.5, 1.5, 0.2));
     const auto surroundings = room.surroundings();
     const double above_itself = stance_of(surroundings, room, id).height();
@@ -229,8 +220,7 @@ TEST_F(EarthquakeField, HeightsCountFromWhatCarriesAThing) {
 // Over the edge that the shaking takes it over it comes to rest no lower; what lies behind a pass a
 // hundred times as high is none of the earthquake's doing.
 TEST_F(EarthquakeField, BringsNoMoreThanItTakesToOverturn) {
-    test::Room room(0.02);
-    room.floor(0, 3, 0, 3);
+    test::Room room(0.02, {0, 0}, {3, 3});
     const auto id = static_cast<std::size_t>(room.thing(1.5, 1.5, 0, 0.08, 0.4));
     RiskObject& object = room.objects[id];
     const auto earthquake = [&](double first_m) {

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "safety/human/human_field.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/random.h"
 #include "kernels/device_harness.h"
 #include "oracle/disturbance_oracle.h"
 #include "room.h"
-#include "safety/fields.h"
 #include "safety/human/body_parts.h"
 #include "safety/human/convolution.h"
 #include "safety/human/walkable_map.h"
-#include "topple/error.h"
 
 namespace topple::safety {
 namespace {
@@ -31,8 +25,7 @@ double struck(const Disturbance& field, std::int32_t object) {
 
 // The five cases of the paper's Fig. 11, in two rooms joined by a door.
 TEST_P(HumanField, FiveTypicalPlaces) {
-    test::Room room(0.025);
-    room.floor(0, 5, 0, 6);
+    test::Room room(0.025, {0, 0}, {5, 6});
     room.box(-0.1, 0, -0.1, 6.1, 0, 2);
     room.box(5, 5.1, -0.1, 6.1, 0, 2);
     room.box(0, 5, -0.1, 0, 0, 2);
@@ -68,8 +61,7 @@ TEST_P(HumanField, FiveTypicalPlaces) {
 
 TEST_P(HumanField, NoArmReachesThroughAWall) {
     for (const bool wall : {false, true}) {
-        test::Room room(0.025);
-        room.floor(0, 3, 0, 2);
+        test::Room room(0.025, {0, 0}, {3, 2});
         room.box(0, 3, 2.2, 2.6, 0.95, 1.0);  // a shelf
         const auto cup = room.thing(1.5, 2.3, 1.0);
         if (wall) room.box(0, 3, 2.1, 2.125, 0, 2);
@@ -83,8 +75,7 @@ TEST_P(HumanField, ElsewhereIsAsIfItStoodThere) {
     const double inside[] = {0.95, 0.45, 0.25, 0.05};
     std::vector<double> moved, there;
     for (const double at : inside) {
-        test::Room room(0.025);
-        room.floor(0, 4, 0, 4);
+        test::Room room(0.025, {0, 0}, {4, 4});
         room.box(1, 3, 1, 3, 0.7, 0.75);
         const auto cup = room.thing(1 + at, 2, 0.75);
         const Surroundings s = room.surroundings();
@@ -108,8 +99,7 @@ TEST_P(HumanField, ElsewhereIsAsIfItStoodThere) {
 
 // Floors at different heights are walked on alike: a gallery beside a floor.
 TEST_P(HumanField, EachFloorIsWalkedOn) {
-    test::Room room(0.05);
-    room.floor(0, 3, 0, 3);
+    test::Room room(0.05, {0, 0}, {3, 3});
     room.floor(4, 7, 0, 3, 2.5);
     const auto low = room.thing(1.5, 1.5, 0, 0.1, 0.9), high = room.thing(5.5, 1.5, 2.5, 0.1, 0.9);
     const auto under = room.thing(5.5, 1.5, 0.5, 0.1, 0.5);
@@ -123,8 +113,7 @@ TEST_P(HumanField, EachFloorIsWalkedOn) {
 // A thin thing on a table is struck by hands that pass just above the table's top.
 TEST_P(HumanField, ThinThingsOnTablesAreWithinReach) {
     for (const double table : {0.65, 0.70, 0.75, 0.80, 0.85}) {
-        test::Room room(0.025);
-        room.floor(0, 3, 0, 3);
+        test::Room room(0.025, {0, 0}, {3, 3});
         room.box(1, 2, 1, 2, table - 0.025, table);
         const auto book = room.box(1, 1.2, 1.4, 1.6, table, table + 0.025, false);
         EXPECT_GT(struck(field(room), book), 0.01) << "table of " << table << " m";
@@ -133,8 +122,7 @@ TEST_P(HumanField, ThinThingsOnTablesAreWithinReach) {
 
 // Exposure of every object's voxel against the double-precision scatter over the same walks.
 TEST_P(HumanField, MatchesTheOracle) {
-    test::Room room(0.025);
-    room.floor(0, 1.6, 0, 1.5);
+    test::Room room(0.025, {0, 0}, {1.6, 1.5});
     room.box(0.6, 0.7, 0.1, 0.8, 0, 1.2);
     room.box(1.0, 1.6, 1.1, 1.5, 0.7, 0.75);
     room.thing(1.1, 1.2, 0.75);
@@ -155,9 +143,8 @@ TEST_P(HumanField, MatchesTheOracle) {
         if (s.is_floor_primitive[cells.primitive[v]]) continue;
         for (unsigned b = 0; b < 32; ++b) {
             const double middle = (b + 0.5) * band_m;
-            if (cells.k[v] * cells.voxel_m <= middle && middle < (cells.k[v] + 1) * cells.voxel_m) {
+            if (cells.k[v] * cells.voxel_m <= middle && middle < (cells.k[v] + 1) * cells.voxel_m)
                 grid.solid[map.cell_of(cells.i[v], cells.j[v])] |= 1u << b;
-            }
         }
     }
     // density[part][direction][band] of every cell

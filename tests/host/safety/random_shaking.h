@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-
 #include "core/random.h"
+#include "standard.h"
 #include "topple/input.h"
 
 namespace topple::test {

@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "core/random.h"
-#include "errors.h"
 #include "kernels/device_harness.h"
 #include "room.h"
 #include "safety/human/body_parts.h"
@@ -197,8 +186,7 @@ class RecordedField : public test::EachBackend {};
 
 // The device's field against a direct double-precision sum over the same walks, without obstacles.
 TEST_P(RecordedField, IsTheSumOverWalkersAndTheirMotion) {
-    test::Room room(0.05);
-    room.floor(0, 2.5, 0, 2.0);
+    test::Room room(0.05, {0, 0}, {2.5, 2.0});
     // As thin as a cell, so that they are not in their own way.
     const auto low = room.thing(1.025, 1.225, 0, 0.05, 0.2);
     const auto tall = room.thing(1.625, 0.625, 0, 0.05, 0.9);

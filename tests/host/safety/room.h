@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
-#include <map>
-#include <tuple>
-#include <vector>
-
 #include "safety/fields.h"
+#include "standard.h"
 
 namespace topple::test {
 
@@ -15,6 +11,11 @@ namespace topple::test {
 class Room {
   public:
     explicit Room(double voxel_m) { cells_.voxel_m = voxel_m; }
+    // With a floor from `low` to `high`.
+    Room(double voxel_m, const std::array<double, 2>& low, const std::array<double, 2>& high)
+        : Room(voxel_m) {
+        floor(low[0], high[0], low[1], high[1]);
+    }
 
     // Returns the object's id.
     std::int32_t box(double x0, double x1, double y0, double y1, double z0, double z1,

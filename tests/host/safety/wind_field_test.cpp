@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "safety/wind/wind_field.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "device/devices.h"
 #include "physics/directions.h"
 #include "room.h"
 #include "safety/columns.h"
-#include "safety/fields.h"
 #include "safety/objects.h"
+#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::safety {
@@ -83,8 +78,7 @@ TEST_F(WindField, ClosedFormsOfTheBox) {
 // A box tips at sqrt(2 m g (d / 2) / (h / 2) / (rho C_d w h)), over its long
 // side.
 TEST_F(WindField, GustThatTipsTheBox) {
-    test::Room room(0.01);
-    room.floor(-1, 1, -1, 1);
+    test::Room room(0.01, {-1, -1}, {1, 1});
     const auto id = static_cast<std::size_t>(room.box(0, 0.2, 0, 0.3, 0, 0.5, false));
     RiskObject& box = room.objects[id];
     box.support_polygon = {{0, 0}, {0.2, 0}, {0.2, 0.3}, {0, 0.3}};
@@ -134,8 +128,7 @@ TEST_F(WindField, WorkGrowsWithSpeedAndReachesTheBarrierAtTheThreshold) {
 }
 
 TEST_F(WindField, ShelteredFromWhereAWallStands) {
-    test::Room room(0.02);
-    room.floor(-2, 3, -2, 3);
+    test::Room room(0.02, {-2, -2}, {3, 3});
     const auto cup = room.thing(0.5, 0.5, 0, 0.1, 0.2);
     const double open = load(room, cup, 0).area_m2;
     EXPECT_NEAR(open, 0.02, 1e-9);
@@ -154,8 +147,7 @@ TEST_F(WindField, ShelteredFromWhereAWallStands) {
 
 // A wall shelters from one side only; degrees clockwise from north, where the wind comes from.
 TEST_F(WindField, OneWindComesFromWhereItIsSaidTo) {
-    test::Room room(0.02);
-    room.floor(-2, 3, -2, 3);
+    test::Room room(0.02, {-2, -2}, {3, 3});
     const auto cup = static_cast<std::size_t>(room.thing(0.5, 0.5, 0, 0.1, 0.2));
     room.box(0.9, 1.0, -1, 2, 0, 1);  // to the east
     const auto from = [&](double degrees) {

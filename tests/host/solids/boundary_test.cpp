@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "solids/boundary.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
-#include <numbers>
-#include <set>
-#include <utility>
-
 #include "device/devices.h"
 #include "host/solids/boxes.h"
 #include "physics/bodies.h"
@@ -15,6 +8,7 @@
 #include "physics/solid_hulls.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
+#include "testing.h"
 #include "topple/error.h"
 
 namespace topple::solids {
@@ -98,9 +92,8 @@ TEST(Boundary, ACupIsItsWallAndItsBottom) {
         s.cells.voxel_m = 0.02;
         const auto add = [&](double r, double angle, double z, std::int32_t primitive,
                              std::int32_t patch) {
-            s.cloud.x.push_back(static_cast<float>(foot.x() + r * std::cos(angle)));
-            s.cloud.y.push_back(static_cast<float>(foot.y() + r * std::sin(angle)));
-            s.cloud.z.push_back(static_cast<float>(foot.z() + z));
+            test::add(s.cloud, foot.x() + r * std::cos(angle), foot.y() + r * std::sin(angle),
+                      foot.z() + z);
             s.primitive.push_back(primitive);
             s.patch.push_back(patch);
         };
@@ -188,9 +181,7 @@ TEST(Boundary, AConcaveEdgeIsNoWiderThanItsFaces) {
     for (std::size_t n = 0; n < both.cloud.size(); ++n) {
         const Eigen::Vector3d p(both.cloud.x[n], both.cloud.y[n], both.cloud.z[n]);
         if ((both.primitive[n] == 0 ? post : foot).holds(p, -1e-6)) continue;
-        one.cloud.x.push_back(both.cloud.x[n]);
-        one.cloud.y.push_back(both.cloud.y[n]);
-        one.cloud.z.push_back(both.cloud.z[n]);
+        test::add(one.cloud, both.cloud.x[n], both.cloud.y[n], both.cloud.z[n]);
         one.primitive.push_back(0);
         // Faces that are flush are one.
         constexpr std::array<std::int32_t, 12> of_one{0, 1, 2, 3, 4, 5, 0, 7, 2, 3, 10, 11};

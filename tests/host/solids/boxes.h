@@ -2,10 +2,8 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <cmath>
-#include <map>
-#include <vector>
 
+#include "clouds.h"
 #include "core/boundary_cells.h"
 #include "core/solid_cells.h"
 #include "core/thread_pool.h"
@@ -73,9 +71,7 @@ inline void add_points(const Box& box, std::int32_t primitive, double spacing, S
                 const Eigen::Vector3d p =
                     at + ((m + 0.5) / steps(u) * 2 - 1) * box.half[u] * box.axes.col(u) +
                     ((n + 0.5) / steps(v) * 2 - 1) * box.half[v] * box.axes.col(v);
-                out.cloud.x.push_back(static_cast<float>(p.x()));
-                out.cloud.y.push_back(static_cast<float>(p.y()));
-                out.cloud.z.push_back(static_cast<float>(p.z()));
+                test::add(out.cloud, p.x(), p.y(), p.z());
                 out.primitive.push_back(primitive);
                 out.patch.push_back(patch);
             }

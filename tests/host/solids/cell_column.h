@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-
 #include "core/solid_cells.h"
+#include "standard.h"
 
 namespace topple::test {
 

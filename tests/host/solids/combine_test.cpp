@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "solids/combine.h"
 
-#include <gtest/gtest.h>
-
 #include "host/solids/boxes.h"
+#include "testing.h"
 
 namespace topple::solids {
 namespace {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "solids/patches.h"
 
-#include <gtest/gtest.h>
-
-#include <numbers>
-
+#include "clouds.h"
 #include "core/thread_pool.h"
 #include "geometry/algebraic_model.h"
 #include "random.h"
+#include "testing.h"
 
 namespace topple::solids {
 namespace {
@@ -19,9 +17,7 @@ struct Sampled {
     PointCloud cloud;
     std::vector<std::int32_t> label;
     void add(const Vector3d& p, std::int32_t of = 0) {
-        cloud.x.push_back(static_cast<float>(p.x()));
-        cloud.y.push_back(static_cast<float>(p.y()));
-        cloud.z.push_back(static_cast<float>(p.z()));
+        test::add(cloud, p.x(), p.y(), p.z());
         label.push_back(of);
     }
 };

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "solids/surface_mesh.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <numbers>
-#include <set>
-
 #include "core/vectors.h"
 #include "device/devices.h"
 #include "host/solids/boxes.h"
@@ -15,6 +8,7 @@
 #include "solids/boundary.h"
 #include "solids/shaded_mesh.h"
 #include "solids/simplify_mesh.h"
+#include "testing.h"
 
 namespace topple::solids {
 namespace {
@@ -101,9 +95,7 @@ Scanned round(const SurfacePatch& quadric, double half_height, double radius, bo
     out.patches = {quadric};
     const Vec3& o = quadric.origin;
     const auto add = [&](double x, double y, double z, std::int32_t patch) {
-        out.cloud.x.push_back(static_cast<float>(o[0] + x));
-        out.cloud.y.push_back(static_cast<float>(o[1] + y));
-        out.cloud.z.push_back(static_cast<float>(o[2] + z));
+        test::add(out.cloud, o[0] + x, o[1] + y, o[2] + z);
         out.primitive.push_back(0);
         out.patch.push_back(patch);
     };

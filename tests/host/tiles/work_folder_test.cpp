@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "scale/work_folder.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-#include <vector>
-
+#include "clouds.h"
 #include "errors.h"
+#include "host/io/files.h"
 #include "lab/temporary_folder.h"
 #include "scale/binary_file.h"
 #include "scale/point_spill.h"
 #include "scale/thinned_bin.h"
 #include "scale/work_files.h"
-#include "topple/error.h"
 
 namespace topple::tiles {
 namespace {
@@ -29,10 +23,6 @@ class WorkFolders : public ::testing::Test {
   protected:
     void put(const std::string& name, const std::string& text) const {
         std::ofstream(path_ / name, std::ios::binary) << text;
-    }
-    std::string text_of(const fs::path& file) const {
-        std::ifstream in(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
     }
     void put_block(const std::string& name) const {
         BinaryWriter out(path_ / name);
@@ -98,7 +88,7 @@ TEST_F(WorkFolders, LeaveWhatIsNotOurs) {
     leave("other cloud");
     put("thesis.tex", "x");
     expect_refused("thesis.tex");
-    EXPECT_EQ(text_of(path_ / "thesis.tex"), "x");
+    EXPECT_EQ(test::bytes_of_file(path_ / "thesis.tex"), "x");
 }
 
 // By their names alone files without a manifest are not ours.
@@ -106,7 +96,7 @@ TEST_F(WorkFolders, LeaveFilesWithoutOurMark) {
     fs::create_directory(path_);
     put("block-3", "my own notes on block 3");
     expect_refused("block-3");
-    EXPECT_EQ(text_of(path_ / "block-3"), "my own notes on block 3");
+    EXPECT_EQ(test::bytes_of_file(path_ / "block-3"), "my own notes on block 3");
 }
 
 TEST_F(WorkFolders, LeaveLinksAlone) {
@@ -120,7 +110,7 @@ TEST_F(WorkFolders, LeaveLinksAlone) {
     leave("cloud");
     fs::create_symlink(elsewhere / "block-0", path_ / "block-1");
     expect_refused("block-1");
-    EXPECT_EQ(text_of(elsewhere / "block-0"), "x");
+    EXPECT_EQ(test::bytes_of_file(elsewhere / "block-0"), "x");
 }
 
 // As a full disk leaves it, or a bit that turned.
@@ -160,9 +150,7 @@ TEST_F(WorkFolders, TellWhatIsDamaged) {
         PointSpill spill(path_, 1 << 20);
         PointCloud cloud;
         for (int n = 0; n < 20; ++n) {
-            cloud.x.push_back(0.1f * static_cast<float>(n));
-            cloud.y.push_back(1);
-            cloud.z.push_back(2);
+            test::add(cloud, 0.1f * static_cast<float>(n), 1, 2);
             cloud.red.push_back(static_cast<std::uint8_t>(n + 1));
             cloud.green.push_back(2);
             cloud.blue.push_back(3);
@@ -177,7 +165,7 @@ TEST_F(WorkFolders, TellWhatIsDamaged) {
     ASSERT_EQ(all.size(), 9u);
     for (const std::string& name : all) {
         if (name == manifest_name || name == FolderLock::file_name) continue;
-        const std::string text = text_of(whole / name);
+        const std::string text = test::bytes_of_file(whole / name);
         const bool of_bin = name.find("0_0_0") != std::string::npos;
         const std::string told = of_bin                   ? "cells-0_0_0"
                                  : name.ends_with(".bin") ? "bins.bin"

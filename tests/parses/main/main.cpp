@@ -3,9 +3,6 @@
 // seed on for that long, or calls the interface for C; prints what is wrong with any, and at the
 // end how many there were. Exit code 1 where something was.
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <string>
 
 #include "lab/temporary_folder.h"
 #include "parses/c_calls.h"
