@@ -31,7 +31,7 @@ class Caller : public Arguments {
     const topple_result* result() { return or_null(result_.get(), 0.02); }
 
     void parse() {
-        topple_options o;
+        topple_options o{};
         topple_options_init(&o, chance(0.05) ? random_.below(sizeof(o) + 1) : sizeof(o));
         o.size = sizeof(o);
         o.device = device_.get();  // NULL: the best, which takes long to be found

@@ -5,7 +5,7 @@
 #include "geometry/primitive_shapes.h"
 #include "graph/cut_chain.h"
 #include "graph/greedy_contraction.h"
-#include "graph/joint_bias.h"
+#include "graph/joints.h"
 #include "graph/known_links.h"
 #include "graph/stable_objects.h"
 #include "host/geometry/sampled_faces.h"
@@ -167,29 +167,28 @@ TEST_P(JointFeatures, HardlyDependOnTheDensityOfTheScan) {
     }
 }
 
-// Each of some primitives with each of the others, after one that is pinned and joined to all.
-std::vector<Joint> all_pairs(std::int32_t things) {
-    std::vector<Joint> out;
-    for (std::int32_t a = 0; a <= things; ++a)
-        for (std::int32_t b = a + 1; b <= things; ++b) out.push_back({a, b, 0.5 * a + b});
-    return out;
+TEST(Joints, EachHasTheBias) {
+    const std::vector<Joint> joints{{0, 1, 2.5}, {0, 2, -1}, {3, 4, 0}};
+    const std::vector<Joint> out = biased_joints(joints, -1.5);
+    ASSERT_EQ(out.size(), joints.size());
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        EXPECT_EQ(out[n].a, joints[n].a);
+        EXPECT_EQ(out[n].b, joints[n].b);
+        EXPECT_EQ(out[n].log_odds, joints[n].log_odds - 1.5);
+    }
 }
 
-TEST(JointBias, EachJointHasItAndMoreWhereAllHaveManyNeighbours) {
-    for (const std::int32_t things : {0, 1, 2, 6, 8, 11}) {
-        std::vector<bool> pinned(static_cast<std::size_t>(things) + 1, false);
-        pinned[0] = true;
-        const std::vector<Joint> joints = all_pairs(things);
-        const std::vector<Joint> out = biased_joints(joints, pinned, -1.5);
-        const double crowded = std::max(1.0, (things - 1) / most_neighbours);
-        ASSERT_EQ(out.size(), joints.size());
-        for (std::size_t n = 0; n < out.size(); ++n) {
-            EXPECT_EQ(out[n].a, joints[n].a);
-            EXPECT_EQ(out[n].b, joints[n].b);
-            EXPECT_NEAR(out[n].log_odds, joints[n].log_odds - 1.5 * std::pow(crowded, 3), 1e-12);
-            EXPECT_EQ(biased_joints(joints, pinned, 0)[n].log_odds, joints[n].log_odds);
-        }
-    }
+TEST(Joints, AreDoubtedWhereNoiseBreaksSurfacesIntoFragments) {
+    const auto doubt = [](std::size_t count, std::size_t samples) {
+        return doubt_of_fragments(std::vector(count, samples));
+    };
+    EXPECT_EQ(doubt(0, 0), 0);
+    EXPECT_EQ(doubt(500, 30), 0);
+    EXPECT_EQ(doubt(500, 2000), 0);
+    EXPECT_NEAR(doubt(990, 6), 1.15 * 0.99 * (3.4 - std::log(6)), 1e-9);
+    EXPECT_NEAR(doubt(990, 0), 1.15 * 0.99 * 3.4, 1e-9);
+    EXPECT_NEAR(doubt(10, 6), 1.15 * 0.5 * (3.4 - std::log(6)), 1e-9);  // a few small things
+    EXPECT_GT(doubt(500, 5), doubt(500, 6));
 }
 
 using test::box;
