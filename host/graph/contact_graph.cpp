@@ -363,7 +363,6 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     graph.voxel_m = cells.voxel_m;
     const auto count = static_cast<std::size_t>(primitives);
     graph.silhouette_m2.assign(count, {0, 0, 0});
-    graph.clearances.resize(count);
     graph.lowest_m.assign(count, std::numeric_limits<double>::infinity());
     graph.highest_m.assign(count, -std::numeric_limits<double>::infinity());
     graph.section_m2.assign(count, 0.0);
@@ -376,7 +375,6 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     const Shapes shapes(cells, boundary);
     std::map<std::pair<std::int32_t, std::int32_t>, std::vector<ContactColumn>>
         carried;  // (supported, supporter)
-    std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;
     std::vector<std::int32_t> alone(count);  // each primitive as an object of its own
     std::iota(alone.begin(), alone.end(), 0);
@@ -399,7 +397,6 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         const std::int32_t lower = cells.primitive[n - 1];
         if (lower == upper) continue;
         const std::int32_t empty = cells.k[n] - cells.k[n - 1] - 1;
-        ++gaps[{upper, lower, empty}];
         if (cells.unseen_below.empty() || cells.unseen_below[n] >= empty)
             ++hidden[std::minmax(upper, lower)];
         if (empty > static_cast<std::int32_t>(contact_gap)) continue;
@@ -424,10 +421,6 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     add_leanings(graph);
     add_hidden_carryings(undersides, extents, h, shapes, graph);
     add_hidden_joints(device, cells, primitives, hidden, graph);
-    for (const auto& [key, columns] : gaps) {
-        const auto& [upper, lower, empty] = key;
-        graph.clearances[upper].push_back({lower, empty * h, static_cast<double>(columns) * h * h});
-    }
     return graph;
 }
 

@@ -34,13 +34,6 @@ struct Leaning {
     std::array<std::array<double, 2>, 4> outline{};  // points on its border, seen from above
 };
 
-// How far a primitive hangs above what lies under it, for the columns of one gap.
-struct Clearance {
-    std::int32_t below = -1;  // primitive, or -1 for unlabelled solid
-    double gap_m = 0;
-    double area_m2 = 0;  // of those columns
-};
-
 struct ContactGraph {
     std::int32_t primitives = 0;
     double voxel_m = 0;
@@ -48,7 +41,6 @@ struct ContactGraph {
     std::vector<Carrying> carryings;                          // sorted by (supported, supporter)
     std::vector<Leaning> leanings;                            // sorted by (primitive, against)
     Table<PrimitiveId, std::array<double, 3>> silhouette_m2;  // area seen along x, y, z
-    Table<PrimitiveId, std::vector<Clearance>> clearances;    // sorted by (below, gap)
     Table<PrimitiveId, double> lowest_m, highest_m;
     Table<PrimitiveId, double> section_m2;  // mean level cross-section
 

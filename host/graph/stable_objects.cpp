@@ -67,31 +67,6 @@ physics::Candidate candidate_of(const ContactGraph& graph,
     return candidate;
 }
 
-double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> primitives) {
-    // A fragment under one corner does not stop a fall.
-    constexpr double least_share = 0.15;  // of the body, seen from below
-    std::vector<Clearance> under;
-    double lowest = std::numeric_limits<double>::infinity(), area = 0;
-    for (const std::int32_t p : primitives) {
-        lowest = std::min(lowest, graph.lowest_m[p]);
-        area += graph.silhouette_m2[p][2];
-        for (const Clearance& c : graph.clearances[p]) {
-            if (std::find(primitives.begin(), primitives.end(), c.below) == primitives.end())
-                under.push_back(c);
-        }
-    }
-    std::ranges::sort(under, {}, &Clearance::gap_m);
-    double met = 0;
-    for (const Clearance& c : under) {
-        met += c.area_m2;
-        if (met >= least_share * area) return c.gap_m;
-    }
-    // Nothing was seen below: down to the lowest thing in the scene.
-    double floor = std::numeric_limits<double>::infinity();
-    for (const double z : graph.lowest_m) floor = std::min(floor, z);
-    return std::isfinite(lowest - floor) ? lowest - floor : 0;
-}
-
 double standing_cost(const physics::Candidate& c, double noise_m) {
     constexpr double unseen_support = 0.05;  // share of what stands whose support no scan shows
     const double worst = -std::log(unseen_support);

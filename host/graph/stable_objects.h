@@ -26,7 +26,7 @@ struct GroupingOptions {
     // Found on rooms that no model was fitted on (docs/testing.md): the weight of S(O, W) beside
     // the joints' log-odds, and the bias of each joint (graph/joints.h), nats.
     double standing_weight = 0.3;
-    double joint_bias = -1.4;
+    double joint_bias = -1.3;
     double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
     KnownLinks links;
@@ -46,9 +46,6 @@ physics::Candidate candidate_of(const ContactGraph& graph,
                                 TableView<PrimitiveId, physics::MassProperties> bodies,
                                 const Table<PrimitiveId, bool>& shell,
                                 std::vector<std::int32_t> primitives);
-
-// Height that the body falls before it meets something, metres, where nothing holds it up.
-double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> primitives);
 
 // S(O, W) as W goes to 0, in nats: -ln P(the body stands by itself), where the border of its
 // support is known to about `noise_m`. What stands, however precariously, costs next to nothing;

@@ -91,12 +91,4 @@ std::int32_t met_when_tipped(const SolidCells& cells, const CellColumns& columns
     return landing(cells, columns, body, direction, inside ? distance : 0).onto;
 }
 
-double drop_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
-                          const Candidate& body) {
-    const Footing foot = footing(body.support_polygon, body.body.center[0], body.body.center[1]);
-    const auto weakest = std::ranges::min_element(foot.edges, {}, &Footing::Edge::distance_m);
-    const Vec3 direction = foot.edges.empty() ? foot.away : weakest->outward;
-    return landing(cells, columns, body, direction, foot.margin_m).drop_m;
-}
-
 }  // namespace topple::physics

@@ -20,8 +20,5 @@ std::vector<double> drops_when_tipped_m(const SolidCells& cells, const CellColum
 // `on_edge` is a point, and it is known to fall; -1 for other solid.
 std::int32_t met_when_tipped(const SolidCells& cells, const CellColumns& columns,
                              const Candidate& body, const Vec3& direction, const Vec3& on_edge);
-// How far it falls over the weakest of them.
-double drop_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
-                          const Candidate& body);
 
 }  // namespace topple::physics

@@ -44,14 +44,6 @@ void contact_fields(Io& io, Contacts& c, std::size_t count) {
        }));
     io.expect(std::ranges::is_sorted(c.leanings, {}, &graph::Leaning::primitive));
     io(c.silhouette_m2, length(count), amount);
-    list_fields(io, c.clearances, [count](auto& each, auto& of_primitive) {
-        list_fields(each, of_primitive, [count](auto& one, auto& clearance) {
-            one(clearance.below, labels(count));
-            one(clearance.gap_m, place);
-            one(clearance.area_m2, amount);
-        });
-    });
-    io.expect(c.clearances.size() == count);
     for (auto* values : {&c.lowest_m, &c.highest_m}) io(*values, length(count), no_nan);
     io(c.section_m2, length(count), amount);
 }
