@@ -14,7 +14,7 @@ namespace {
 
 // By a logistic fit on depth images of others' models. The room's primitives, surer than `room`,
 // are large however noisy a scan is.
-constexpr double usual_log_samples = 3.4, doubt_per_unit = 1.15;
+constexpr double usual_log_samples = 3.4, doubt_per_unit = 1.5;
 constexpr float room = 0.9f;
 
 }  // namespace
