@@ -42,7 +42,7 @@ constexpr int deepest = 6;
 // by one descriptor at a time, as there may be no more.
 void unlink_all(char* path, int depth) {
     const std::size_t length = std::strlen(path);
-    for (bool again = true; again;) {
+    for (;;) {
         const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         if (folder < 0) return;
         char inner[NAME_MAX + 1] = {};  // a folder that is not empty
@@ -56,18 +56,19 @@ void unlink_all(char* path, int depth) {
                     name[0] == '.' && (name[1] == 0 || (name[1] == '.' && name[2] == 0));
                 if (dots || (depth == 0 && std::strcmp(name, staging_lock) == 0)) continue;
                 if (::unlinkat(folder, name, 0) != 0 &&
-                    ::unlinkat(folder, name, AT_REMOVEDIR) != 0 && errno == ENOTEMPTY)
+                    ::unlinkat(folder, name, AT_REMOVEDIR) != 0 &&
+                    (errno == ENOTEMPTY || errno == EEXIST))
                     std::strncpy(inner, name, NAME_MAX);
             }
         }
         ::close(folder);
-        again = inner[0] != 0 && depth < deepest && length + NAME_MAX + 2 < PATH_MAX;
-        if (!again) return;
+        if (inner[0] == 0 || depth == deepest || length + NAME_MAX + 2 >= PATH_MAX) return;
         path[length] = '/';
         std::strcpy(path + length + 1, inner);
         unlink_all(path, depth + 1);
-        again = ::rmdir(path) == 0;
+        const bool removed = ::rmdir(path) == 0;
         path[length] = 0;
+        if (!removed) return;
     }
 }
 
@@ -95,14 +96,13 @@ void remove_tree(const char* path) noexcept {
     char within[PATH_MAX];
     if (std::strlen(path) >= PATH_MAX) return;
     std::strcpy(within, path);
-    // Another thread may add a file while we remove: look again.
-    for (int attempt = 0; attempt < 100; ++attempt) {
+    // Another thread may add a file while we remove: look again. What is empty takes no descriptor.
+    for (int attempt = 0; attempt < 100 && ::rmdir(path) != 0; ++attempt) {
         unlink_all(within, 0);
         const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         if (folder < 0) return;
         ::unlinkat(folder, staging_lock, 0);
         ::close(folder);
-        if (::rmdir(path) == 0) return;
     }
 }
 
