@@ -12,10 +12,9 @@
 namespace topple::graph {
 namespace {
 
-// By a logistic fit on depth images of others' models. The room's primitives, surer than `room`,
-// are large however noisy a scan is.
+// By a logistic fit on depth images of others' models, as they are and with the correlated noise of
+// real sensors. The room's primitives are left out: they are large however noisy a scan is.
 constexpr double usual_log_samples = 3.4, doubt_per_unit = 1.5;
-constexpr float room = 0.9f;
 
 }  // namespace
 
@@ -44,7 +43,7 @@ std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
     const std::size_t width = joint_feature_names().size();
     std::vector<std::size_t> fragments;
     for (std::size_t p = 0; p < shapes.of.size(); ++p)
-        if (shell[p] <= room) fragments.push_back(shapes.of[p].samples());
+        if (shell[p] <= surely_shell) fragments.push_back(shapes.of[p].samples());
     const double doubt = doubt_of_fragments(std::move(fragments));
     std::vector<Joint> out(table.pairs.size());
     threads.each(out.size(), 64, [&](std::size_t n) {

@@ -22,6 +22,10 @@ struct Joint {
     double log_odds = 0;          // that they are one solid object
 };
 
+// A primitive that is surer to be the room's than this is taken for it; others are left to their
+// joints.
+inline constexpr double surely_shell = 0.9;
+
 // The joints around a primitive look at the same surfaces: they are no independent witnesses, and
 // the sum of their log-odds says too much. The same with so much added to each, nats.
 std::vector<Joint> biased_joints(std::span<const Joint> joints, double bias);

@@ -25,12 +25,10 @@ namespace {
 // 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
 constexpr unsigned sphere_frequency = 16;
 
-// What is less sure to be the room's than this is left to its joints.
-constexpr double surely_shell = 0.9;
-
 graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
     graph::ShellOdds out{log_odds, {}};
-    for (const double odds : log_odds) out.pinned.push_back(odds > fitted::log_odds(surely_shell));
+    for (const double odds : log_odds)
+        out.pinned.push_back(odds > fitted::log_odds(graph::surely_shell));
     // Something is the ground that all else stands on: a table in a close view.
     if (!log_odds.empty() && std::ranges::find(out.pinned, true) == out.pinned.end())
         out.pinned[std::ranges::max_element(log_odds) - log_odds.begin()] = true;

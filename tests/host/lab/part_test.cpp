@@ -259,13 +259,21 @@ std::vector<Solid> solids_of_all_shapes() {
     };
 }
 
+struct Surface {
+    std::vector<Sheet> sheets;
+    std::vector<Patch> patches;
+};
+Surface surface_of(const Solid& solid) {
+    Surface out;
+    add_sheets(solid.part, 0, out.sheets);
+    for (std::size_t k = 0; k < out.sheets.size(); ++k)
+        add_patches(out.sheets[k], static_cast<std::uint32_t>(k), 0.025, out.patches);
+    return out;
+}
+
 TEST(PartSurface, PatchesMakeUpTheSurface) {
     for (const Solid& solid : solids_of_all_shapes()) {
-        std::vector<Sheet> sheets;
-        add_sheets(solid.part, 0, sheets);
-        std::vector<Patch> patches;
-        for (std::size_t k = 0; k < sheets.size(); ++k)
-            add_patches(sheets[k], static_cast<std::uint32_t>(k), 0.025, patches);
+        const auto [sheets, patches] = surface_of(solid);
         double sum = 0, quarters = 0;
         for (const Patch& patch : patches) {
             sum += patch.area(sheets[patch.sheet]);
@@ -280,11 +288,7 @@ TEST(PartSurface, PatchesMakeUpTheSurface) {
 TEST(PartSurface, PointsLieOnTheSolidWithItsNormal) {
     Random random(1);
     for (const Solid& solid : solids_of_all_shapes()) {
-        std::vector<Sheet> sheets;
-        add_sheets(solid.part, 0, sheets);
-        std::vector<Patch> patches;
-        for (std::size_t k = 0; k < sheets.size(); ++k)
-            add_patches(sheets[k], static_cast<std::uint32_t>(k), 0.025, patches);
+        const auto [sheets, patches] = surface_of(solid);
         for (const Patch& patch : patches) {
             const Sheet& sheet = sheets[patch.sheet];
             const auto [p, n] = patch.spread(sheet, random(0.01, 0.99), random(0.01, 0.99));
