@@ -73,10 +73,12 @@ class Kind:
         self.sound = folder / ("sound-" + name)
         self.normal_s = 0
 
-    def command(self, out, threads):
+    def command(self, out, threads, fault):
         words = [w.format(**{"in": self.folder / "inputs", "ref": self.folder / "sound-cloud/out"}) for w in KINDS[self.name]]
         if words[0] == "parse":
-            return [self.args.topple, *words, *PARSE, "--threads", str(threads), "-o", str(out)]
+            # The cache is written amid the stages, and no child is forked once a file is.
+            no_cache = ["--no-cache"] if fault and fault.startswith("fork") else []
+            return [self.args.topple, *words, *PARSE, *no_cache, "--threads", str(threads), "-o", str(out)]
         if words[0] == "landscape":
             return [self.args.topple, *words, "-o", str(out / "picture.png")]
         return [self.args.topple, *words, "--voxel", "0.08", "--quiet"]
@@ -98,7 +100,7 @@ class Kind:
             environment.update({"LD_PRELOAD": self.args.shim, "TOPPLE_FAULT": fault, "TOPPLE_FAULT_TELL": str(write_end)})
         begin = time.monotonic()
         process = subprocess.Popen(
-            self.command(work / "out", threads), cwd=work, env=environment, pass_fds=(write_end,), stdin=subprocess.DEVNULL,
+            self.command(work / "out", threads, fault), cwd=work, env=environment, pass_fds=(write_end,), stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
             preexec_fn=(lambda: os.sched_setaffinity(0, {core})) if core is not None else None)
         os.close(write_end)
