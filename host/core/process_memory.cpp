@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -40,7 +39,7 @@ std::uint64_t page_bytes() {
 }
 
 // The first number of a file; `none` where there is none, as where it says "max".
-std::uint64_t number_in(const std::filesystem::path& file, std::uint64_t none) {
+std::uint64_t number_in(const std::string& file, std::uint64_t none) {
     std::ifstream in(file);
     std::uint64_t value = 0;
     return in >> value ? value : none;
@@ -48,7 +47,7 @@ std::uint64_t number_in(const std::filesystem::path& file, std::uint64_t none) {
 
 // The sum of the lines "NAME value" of a file.
 template <std::size_t names>
-std::uint64_t sum_in(const std::filesystem::path& file, const std::array<const char*, names>& of) {
+std::uint64_t sum_in(const std::string& file, const std::array<const char*, names>& of) {
     std::ifstream in(file);
     std::uint64_t sum = 0, value = 0;
     std::string name, rest;
@@ -72,20 +71,21 @@ constexpr GroupFiles version_1{"/sys/fs/cgroup/memory",
                                {"total_active_file", "total_inactive_file"}};
 
 // The least that a group and those around it leave. In a container the group's own path is not
-// there, and its files lie at the root.
-std::uint64_t left_of_group(const GroupFiles& files, const std::filesystem::path& group) {
+// there, and its files lie at the root. Paths are strings: where memory ends, copies of
+// std::filesystem::path end the program (libstdc++ 12).
+std::uint64_t left_of_group(const GroupFiles& files, std::string group) {
     std::uint64_t left = unlimited;
-    std::filesystem::path at = group;
     for (;;) {
-        const std::filesystem::path folder = files.root / at.relative_path();
-        const std::uint64_t limit = number_in(folder / files.limit, unlimited);
+        const std::string folder = files.root + group + '/';
+        const std::uint64_t limit = number_in(folder + files.limit, unlimited);
         if (limit != unlimited) {
-            const std::uint64_t used = number_in(folder / files.used, 0);
-            const std::uint64_t cached = sum_in(folder / "memory.stat", files.cached);
+            const std::uint64_t used = number_in(folder + files.used, 0);
+            const std::uint64_t cached = sum_in(folder + "memory.stat", files.cached);
             left = std::min(left, less(limit, less(used, cached)));
         }
-        if (!at.has_relative_path()) return left;
-        at = at.parent_path();
+        if (group.empty()) return left;
+        const auto slash = group.rfind('/');
+        group.erase(slash == std::string::npos ? 0 : slash);
     }
 }
 
