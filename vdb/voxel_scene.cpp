@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/voxel_scene.h"
 
+#include <execinfo.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -17,6 +18,16 @@
 
 namespace topple::vdb {
 namespace {
+
+// The C library's unwinder, TBB and OpenVDB load or register things at their first use, and end the
+// program where there is no memory for that: each is used once before main(), while there is.
+[[maybe_unused]] const bool used_once = [] {
+    void* frame = nullptr;
+    ::backtrace(&frame, 1);
+    tbb::parallel_for(0, 1, [](int) {});
+    openvdb::initialize();
+    return true;
+}();
 
 constexpr std::int32_t window = 1 << 20;  // voxels from the points' median, either way
 
