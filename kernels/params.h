@@ -120,6 +120,24 @@ STRUCT(CellShareParams) {
     float voxel_m;
 } STRUCT_END(CellShareParams)
 
+// dense_layer
+STRUCT(DenseLayerParams) {
+    uint rows;
+    uint outputs;       // a multiple of 32
+    uint width_a;
+    uint width_b;
+    uint width_c;
+    uint weight_first;  // where the layer starts in the weights
+    uint rectified;     // 1: outputs below 0 are 0
+    uint added;         // 1: to what the outputs hold
+} STRUCT_END(DenseLayerParams)
+
+// neighbour_pool
+STRUCT(NeighbourPoolParams) {
+    uint nodes;
+    uint width;  // a multiple of 32
+} STRUCT_END(NeighbourPoolParams)
+
 // group_landscape
 STRUCT(LandscapeParams) {
     uint candidate_count;

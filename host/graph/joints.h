@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/table.h"
-#include "core/thread_pool.h"
+#include "device/device.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
 #include "geometry/surface_seams.h"
@@ -34,13 +34,16 @@ std::vector<Joint> biased_joints(std::span<const Joint> joints, double bias);
 // fragments than on the scans that it was fitted on. samples: of each primitive of a thing.
 double doubt_of_fragments(std::vector<std::size_t> samples);
 
-// Of all pairs of joint_features(), sorted by (a, b), with that doubt. shell: by primitive, the
-// probability that it is the room's.
-std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
-                               const geometry::PrimitiveShapes& shapes,
-                               const ContactGraph& contacts,
-                               TableView<PrimitiveId, physics::MassProperties> bodies,
-                               const geometry::SurfaceSeams& seams,
-                               TableView<PrimitiveId, float> shell, ThreadPool& threads);
+struct Judged {
+    std::vector<Joint> joints;         // of all pairs of joint_features(), sorted by (a, b)
+    Table<PrimitiveId, double> shell;  // log-odds that a primitive is the room's
+};
+
+// What the fitted models say of joints, and of primitives that they are the room's, amid all
+// others, with the doubt above. shell: the same log-odds of each primitive by itself.
+Judged judge_joints(device::Device& device, const geometry::SurfaceSamples& samples,
+                    const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
+                    TableView<PrimitiveId, physics::MassProperties> bodies,
+                    const geometry::SurfaceSeams& seams, TableView<PrimitiveId, double> shell);
 
 }  // namespace topple::graph

@@ -25,25 +25,15 @@ namespace {
 // 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
 constexpr unsigned sphere_frequency = 16;
 
-graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
-    graph::ShellOdds out{log_odds, {}};
+graph::ShellOdds shell_odds(Table<PrimitiveId, double> log_odds) {
+    graph::ShellOdds out;
     for (const double odds : log_odds)
         out.pinned.push_back(odds > fitted::log_odds(graph::surely_shell));
     // Something is the ground that all else stands on: a table in a close view.
     if (!log_odds.empty() && std::ranges::find(out.pinned, true) == out.pinned.end())
         out.pinned[std::ranges::max_element(log_odds) - log_odds.begin()] = true;
+    out.log_odds = std::move(log_odds);
     return out;
-}
-
-std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::ContactGraph& contacts,
-                                      std::span<const physics::MassProperties> bodies,
-                                      ThreadPool& threads) {
-    std::vector<float> shell;
-    for (const double odds : parts.shell_log_odds)
-        shell.push_back(static_cast<float>(fitted::probability(odds)));
-    return graph::find_joints(parts.samples,
-                              geometry::primitive_shapes(parts.samples, parts.model.size()),
-                              contacts, bodies, parts.seams, shell, threads);
 }
 
 void add_independent(const physics::BodyError& more, physics::BodyError& to) {
@@ -166,10 +156,13 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
         stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
     graph::ContactGraph contacts =
         stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
-    std::vector<graph::Joint> joints =
-        stage("joints", [&] { return find_joints(parts, contacts, bodies, device.threads()); });
-    return {std::move(bodies), std::move(contacts), std::move(joints),
-            shell_odds(parts.shell_log_odds)};
+    graph::Judged judged = stage("joints", [&] {
+        return graph::judge_joints(device, parts.samples,
+                                   geometry::primitive_shapes(parts.samples, parts.model.size()),
+                                   contacts, bodies, parts.seams, parts.shell_log_odds);
+    });
+    return {std::move(bodies), std::move(contacts), std::move(judged.joints),
+            shell_odds(std::move(judged.shell))};
 }
 
 physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping,

@@ -18,6 +18,8 @@ std::span<const Case> all_cases() {
         {"six_fill_vote", six_fill_vote},
         {"cell_share", cell_share},
         {"segmented_sum", segmented_sum},
+        {"dense_layer", dense_layer},
+        {"neighbour_pool", neighbour_pool},
         {"support_function", support_function},
         {"group_landscape", group_landscape},
         {"steepest_descent", steepest_descent},

@@ -19,6 +19,8 @@ Prepared six_fill_sweep(device::Device& device);
 Prepared six_fill_vote(device::Device& device);
 Prepared cell_share(device::Device& device);
 Prepared segmented_sum(device::Device& device);
+Prepared dense_layer(device::Device& device);
+Prepared neighbour_pool(device::Device& device);
 Prepared support_function(device::Device& device);
 Prepared group_landscape(device::Device& device);
 Prepared steepest_descent(device::Device& device);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // topple_features SCAN OUT: what the fitted models see of a scan, for fit.py. Writes into the
 // folder OUT: table.json (names, counts, axes), and arrays of little-endian numbers: nodes.f32,
-// pairs.i32, joints.f32, samples.f32 (x y z, grid frame) and primitive.i32.
+// pairs.i32, joints.f32, log_odds.f32 (of the joints' own model, with and without colours),
+// samples.f32 (x y z, grid frame) and primitive.i32.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -37,6 +39,25 @@ void write(const std::filesystem::path& file, const std::vector<T>& values) {
               static_cast<std::streamsize>(values.size() * sizeof(T)));
     out.close();
     if (!out) throw Error(ErrorKind::input, file.string() + ": can't be written");
+}
+
+// Of each joint by the fitted model, with what its colours tell and without.
+std::vector<float> log_odds(std::vector<float> rows) {
+    const auto names = graph::joint_feature_names();
+    const fitted::BoostedTrees& model = fitted::joint_model(names);
+    std::vector<float> out;
+    for (std::size_t at = 0; at < rows.size(); at += names.size()) {
+        const std::span row = std::span(rows).subspan(at, names.size());
+        const auto add = [&] {
+            const double p = fitted::probability(model.log_odds(row));
+            out.push_back(static_cast<float>(fitted::log_odds(p)));
+        };
+        add();
+        for (std::size_t k = 0; k < names.size(); ++k)
+            if (names[k].find("colour") != std::string_view::npos) row[k] = NAN;
+        add();
+    }
+    return out;
 }
 
 // What tells closed furniture, of each object that can move: height, fill, backing; and the object
@@ -87,6 +108,7 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     write(folder / "nodes.f32", nodes);
     write(folder / "pairs.i32", pairs);
     write(folder / "joints.f32", joints.rows);
+    write(folder / "log_odds.f32", log_odds(joints.rows));
     write(folder / "samples.f32", places);
     write(folder / "primitive.i32", samples.primitive);
     std::vector<int> structure;

@@ -19,6 +19,12 @@ MODEL = {
     'trees': [{'feature': [1, 0, -1, -1, -1], 'threshold': [2, 0.1, 1, -2, 3], 'missing_left': [0, 1, 0, 0, 0],
                'left': [1, 2, 0, 0, 0], 'right': [4, 3, 0, 0, 0]},
               {'feature': [-1], 'threshold': [0.25], 'missing_left': [0], 'left': [0], 'right': [0]}]}
+SCALING = {'low': [0, -1], 'high': [1, 2], 'mean': [0.5, 0], 'deviation': [0.25, 1]}
+# Of one round, 32 wide: layers of 3 inputs with one flag, and of 2.
+CONTEXT = {
+    'schema': 'topple.context/1', 'about': 'a test', 'width': 32, 'rounds': 1,
+    'nodes': {'names': ['area', 'shell'], 'missing': [], **SCALING}, 'joints': {'names': ['gap', 'length'], 'missing': [1], **SCALING},
+    'weights': [0.1] * 32 * (3 + 33 + 4 + 33 + 2 * (65 + 33) + 2 * (97 + 33)), 'joint_out': [0.5] * 34, 'shell_out': [0.25] * 34}
 ARRAYS = ('feature', 'threshold', 'missing_left', 'left', 'right')
 
 
@@ -75,6 +81,23 @@ class EmbedModels(unittest.TestCase):
         empty = copy.deepcopy(MODEL)
         empty['trees'][1] = {key: [] for key in ARRAYS}
         self.refused(empty, 'tree 1')
+
+    def test_a_network_comes_out_as_it_is(self):
+        code, said, out = embed(json.dumps(CONTEXT))
+        self.assertEqual((code, said), (0, ''))
+        self.assertIn('test_nodes_deviation, {}}, {test_joints_names,', out)  # nothing of a node is missing
+        self.assertIn('test_joints_missing}, 32, 1,', out)
+        self.assertEqual(out.count('    0.25f,'), 34 + 2)
+
+    def test_damaged_networks_are_refused(self):
+        self.refused({**CONTEXT, 'weights': CONTEXT['weights'][1:]}, 'weights', str(len(CONTEXT['weights'])))
+        self.refused({**CONTEXT, 'weights': [float('nan'), *CONTEXT['weights'][1:]]}, 'weight')
+        self.refused({**CONTEXT, 'width': 31}, 'width')
+        self.refused({**CONTEXT, 'rounds': 0}, 'rounds')
+        self.refused({**CONTEXT, 'joint_out': [1]}, 'joint_out')
+        self.refused({k: v for k, v in CONTEXT.items() if k != 'nodes'}, 'nodes')
+        for key, value in (('missing', [2]), ('deviation', [0, 1]), ('low', [0])):
+            self.refused({**CONTEXT, 'joints': {**CONTEXT['joints'], key: value}}, 'joints')
 
     def test_the_models_of_the_build_are_sound(self):
         for path in FITTED.glob('*.model.json'):

@@ -185,9 +185,9 @@ TEST(Joints, AreDoubtedWhereNoiseBreaksSurfacesIntoFragments) {
     EXPECT_EQ(doubt(0, 0), 0);
     EXPECT_EQ(doubt(500, 30), 0);
     EXPECT_EQ(doubt(500, 2000), 0);
-    EXPECT_NEAR(doubt(990, 6), 1.5 * 0.99 * (3.4 - std::log(6)), 1e-9);
-    EXPECT_NEAR(doubt(990, 0), 1.5 * 0.99 * 3.4, 1e-9);
-    EXPECT_NEAR(doubt(10, 6), 1.5 * 0.5 * (3.4 - std::log(6)), 1e-9);  // a few small things
+    EXPECT_NEAR(doubt(990, 6), 0.99 * (3.4 - std::log(6)), 1e-9);
+    EXPECT_NEAR(doubt(990, 0), 0.99 * 3.4, 1e-9);
+    EXPECT_NEAR(doubt(10, 6), 0.5 * (3.4 - std::log(6)), 1e-9);  // a few small things
     EXPECT_GT(doubt(500, 5), doubt(500, 6));
 }
 
