@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include "core/ranked.h"
 #include "core/scene_bounds.h"
@@ -20,13 +21,18 @@ namespace topple::vdb {
 namespace {
 
 // The C library's unwinder, TBB and OpenVDB load or register things at their first use, and end the
-// program where there is no memory for that: each is used once before main(), while there is.
+// program where there is no memory for that: each is used once when the program or a host loads
+// this, while there is. Where there is none even then, their next use says so.
 [[maybe_unused]] const bool used_once = [] {
     void* frame = nullptr;
     ::backtrace(&frame, 1);
-    tbb::parallel_for(0, 1, [](int) {});
-    openvdb::initialize();
-    return true;
+    try {
+        tbb::parallel_for(0, 1, [](int) {});
+        openvdb::initialize();
+        return true;
+    } catch (const std::bad_alloc&) {
+        return false;
+    }
 }();
 
 constexpr std::int32_t window = 1 << 20;  // voxels from the points' median, either way
