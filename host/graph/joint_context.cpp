@@ -239,8 +239,8 @@ class Network {
 
 }  // namespace
 
-JudgedJoints in_context(device::Device& device, const geometry::PrimitiveShapes& shapes,
-                        const JointTable& table, const JudgedJoints& alone) {
+JointOdds in_context(device::Device& device, const geometry::PrimitiveShapes& shapes,
+                     const JointTable& table, const JointOdds& alone) {
     if (table.pairs.empty()) return alone;
     const std::uint64_t inputs = context_table.joints.width(), width = context_table.width;
     const std::uint64_t most =

@@ -11,7 +11,7 @@
 namespace topple::graph {
 
 // Log-odds of the joints of a table, in its order, and of primitives that they are the room's.
-struct JudgedJoints {
+struct JointOdds {
     std::vector<double> joints;
     Table<PrimitiveId, double> shell;
 };
@@ -21,7 +21,7 @@ struct JudgedJoints {
 // were fitted on scans of others' models (fitted/context.model.json); its layers are kernels, whose
 // sums have a fixed order: the same bits on any device. `alone`: of each joint and primitive by
 // itself.
-JudgedJoints in_context(device::Device& device, const geometry::PrimitiveShapes& shapes,
-                        const JointTable& table, const JudgedJoints& alone);
+JointOdds in_context(device::Device& device, const geometry::PrimitiveShapes& shapes,
+                     const JointTable& table, const JointOdds& alone);
 
 }  // namespace topple::graph

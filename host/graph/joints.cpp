@@ -36,7 +36,7 @@ Judged judge_joints(device::Device& device, const geometry::SurfaceSamples& samp
                     const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
                     TableView<PrimitiveId, physics::MassProperties> bodies,
                     const geometry::SurfaceSeams& seams, TableView<PrimitiveId, double> shell) {
-    JudgedJoints alone;
+    JointOdds alone;
     std::vector<float> in_shell;
     for (const double odds : shell) {
         const double p = fitted::probability(odds);
@@ -53,7 +53,7 @@ Judged judge_joints(device::Device& device, const geometry::SurfaceSamples& samp
         // No model knows more than one part in a thousand.
         alone.joints[n] = fitted::log_odds(fitted::probability(model.log_odds(row)));
     });
-    JudgedJoints amid = in_context(device, shapes, table, alone);
+    JointOdds amid = in_context(device, shapes, table, alone);
     std::vector<std::size_t> fragments;
     for (std::size_t p = 0; p < shapes.of.size(); ++p)
         if (fitted::probability(amid.shell[p]) <= surely_shell)

@@ -16,7 +16,7 @@ using oracle::Matrix;
 struct AnyJoints {
     geometry::PrimitiveShapes shapes;
     JointTable table;
-    JudgedJoints alone;
+    JointOdds alone;
 
     AnyJoints(std::size_t primitives, std::size_t joints) : shapes{} {
         test::Random random(joints);
@@ -45,29 +45,22 @@ struct PlainNetwork {
     std::size_t at = 0;  // in the weights
     Matrix h, e;
 
-    std::vector<double> two_layers(const std::vector<double>& x, std::size_t first) const {
+    Matrix layer(const Matrix& rows, bool rectified) {
         const std::size_t width = context_table.width;
-        const auto layer = [&](const std::vector<double>& in) {
-            std::vector<double> out;
-            for (std::size_t o = 0; o < width; ++o) {
-                double sum = context_table.weights[first + o];
-                for (std::size_t k = 0; k < in.size(); ++k)
-                    sum += in[k] * context_table.weights[first + (1 + k) * width + o];
-                out.push_back(sum);
-            }
-            first += (1 + in.size()) * width;
-            return out;
-        };
-        std::vector<double> hidden = layer(x);
-        for (double& v : hidden) v = std::max(v, 0.0);
-        return layer(hidden);
-    }
-    // Of all rows, which are of one width.
-    Matrix two_layers(const Matrix& rows) {
+        Matrix weights;
+        for (std::size_t line = 0; line <= rows[0].size(); ++line, at += width) {
+            const auto from = context_table.weights.subspan(at, width);
+            weights.emplace_back(from.begin(), from.end());
+        }
+        std::vector<double> y, bound;
+        oracle::dense_layer(rows, weights, rectified, nullptr, y, bound);
         Matrix out;
-        for (const auto& row : rows) out.push_back(two_layers(row, at));
-        at += (2 + rows[0].size() + context_table.width) * context_table.width;
+        for (auto row = y.begin(); row != y.end(); row += context_table.width)
+            out.emplace_back(row, row + context_table.width);
         return out;
+    }
+    Matrix two_layers(const Matrix& rows, bool rectified = false) {
+        return layer(layer(rows, true), rectified);
     }
 
     static std::vector<double> joined(std::initializer_list<std::vector<double>> parts) {
@@ -120,9 +113,7 @@ struct PlainNetwork {
             Matrix rows;
             for (std::size_t j = 0; j < e.size(); ++j)
                 rows.push_back(joined({h[ends[j][1 - side]], e[j]}));
-            message[side] = two_layers(rows);
-            for (auto& row : message[side])
-                for (double& v : row) v = std::max(v, 0.0);
+            message[side] = two_layers(rows, true);
         }
         std::vector<double> told, bound;
         oracle::neighbour_pool(h.size(), context_table.width, ends, message, told, bound);
@@ -154,7 +145,7 @@ TOPPLE_ON_EACH_BACKEND(JointContext);
 
 TEST_P(JointContext, IsThatOfThePlainNetwork) {
     const AnyJoints given(41, 160);
-    const JudgedJoints amid = in_context(*device, given.shapes, given.table, given.alone);
+    const JointOdds amid = in_context(*device, given.shapes, given.table, given.alone);
     PlainNetwork plain;
     plain.run(given);
     ASSERT_EQ(amid.joints.size(), given.table.pairs.size());
@@ -173,15 +164,15 @@ TEST_P(JointContext, IsThatOfThePlainNetwork) {
 
 TEST_P(JointContext, HasTheBitsOfNative) {
     const AnyJoints given(300, 2000);
-    const JudgedJoints here = in_context(*device, given.shapes, given.table, given.alone);
-    const JudgedJoints native = in_context(*open("native"), given.shapes, given.table, given.alone);
+    const JointOdds here = in_context(*device, given.shapes, given.table, given.alone);
+    const JointOdds native = in_context(*open("native"), given.shapes, given.table, given.alone);
     EXPECT_EQ(here.joints, native.joints);
     EXPECT_EQ(here.shell, native.shell);
 }
 
 TEST_P(JointContext, OfNoJointsIsWhatWasKnown) {
     AnyJoints given(3, 0);
-    const JudgedJoints amid = in_context(*device, given.shapes, given.table, given.alone);
+    const JointOdds amid = in_context(*device, given.shapes, given.table, given.alone);
     EXPECT_TRUE(amid.joints.empty());
     EXPECT_EQ(amid.shell, given.alone.shell);
 }
