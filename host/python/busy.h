@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "pybind.h"
 
 namespace topple::python {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <pybind11/numpy.h>
-
 #include <string>
 #include <string_view>
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
 #include <unistd.h>
 
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "pybind.h"
 #include "topple/error.h"
 #include "topple/parse.h"
 
