@@ -138,19 +138,11 @@ STRUCT(NeighbourPoolParams) {
     uint width;  // a multiple of 32
 } STRUCT_END(NeighbourPoolParams)
 
-// group_landscape
-STRUCT(LandscapeParams) {
-    uint candidate_count;
-    uint tile_directions;    // directions in this tile of the table, a multiple of the items per work-item
-    uint padded_directions;  // row length of the output
-    uint tile_first;         // where the tile starts in an output row
-} STRUCT_END(LandscapeParams)
-
-// steepest_descent
-STRUCT(DescentParams) {
-    uint candidate_count;
-    uint padded_directions;  // row length, a multiple of the items per work-item
-} STRUCT_END(DescentParams)
+// group_stance
+STRUCT(GroupStanceParams) {
+    uint groups;
+    uint directions;  // a multiple of 16
+} STRUCT_END(GroupStanceParams)
 
 // rocking
 STRUCT(RockingParams) {

@@ -14,7 +14,7 @@
 namespace topple::perf {
 namespace {
 
-constexpr std::size_t primitives = 96, vertices = 128, groups = 1000, hulls = 100, points = 50;
+constexpr std::size_t hulls = 100, points = 50;
 
 // Points on an ellipsoid of random half axes.
 std::vector<Vec3> shell(scenes::Random& random, std::size_t count, const Vec3& center) {
@@ -32,28 +32,6 @@ std::vector<Vec3> shell(scenes::Random& random, std::size_t count, const Vec3& c
         out.push_back(p);
     }
     return out;
-}
-
-// Groups that stand on a square as wide as they are: 20 cm.
-std::vector<physics::Candidate> group_candidates(const std::vector<Vec3>& center) {
-    scenes::Random random(3);
-    std::vector<physics::Candidate> all;
-    for (std::size_t n = 0; n < groups; ++n) {
-        physics::Candidate candidate;
-        const int members = random.integer(1, 8);
-        const int first = random.integer(0, static_cast<int>(primitives) - members);
-        Vec3 mean{};
-        for (int m = first; m < first + members; ++m) {
-            candidate.primitives.push_back(m);
-            for (std::size_t a = 0; a < 3; ++a) mean[a] += center[m][a] / members;
-        }
-        candidate.body = {1, 0.01, 7, mean};
-        for (const auto& [x, y] : {std::array{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}})
-            candidate.support_polygon.push_back({mean[0] + x, mean[1] + y});
-        candidate.support_height_m = mean[2] - 0.3;
-        all.push_back(std::move(candidate));
-    }
-    return all;
 }
 
 Hash& add(Hash& hash, double value) {
@@ -104,37 +82,11 @@ std::vector<simulation::StandingObject> standing_things() {
 }
 
 std::vector<std::string> landscape_names() {
-    return {"landscapes/table", "landscapes/groups", "landscapes/hulls", "landscapes/objects"};
+    return {"landscapes/hulls", "landscapes/objects"};
 }
 
 std::vector<Result> measure_landscapes(device::Device& device, unsigned runs) {
-    const physics::SphereMesh mesh = physics::geodesic_sphere(16);
-    scenes::Random random(1);
-    std::vector<Vec3> center;
-    std::vector<std::vector<Vec3>> sets;
-    for (std::size_t p = 0; p < primitives; ++p) {
-        center.push_back({random(-0.5, 0.5), random(-0.5, 0.5), random(0, 1)});
-        sets.push_back(shell(random, vertices, center.back()));
-    }
-    const double directions = static_cast<double>(mesh.size());
-    std::vector<Result> results;
-    std::unique_ptr<physics::SupportTable> table;
-    results.push_back(named(device, "landscapes/table",
-                            {primitives * vertices * directions, "dot products", 0, 0}));
-    sample(device, results.back(), runs,
-           [&] { table = std::make_unique<physics::SupportTable>(device, sets, 0.01, mesh); });
-    results.push_back(
-        named(device, "landscapes/groups", {groups * directions, "directions", 0, 0}));
-    const auto candidates = group_candidates(center);
-    std::vector<physics::Stability> stability;
-    sample(device, results.back(), runs,
-           [&] { stability = physics::evaluate(device, *table, candidates); });
-    Hash hash;
-    for (const physics::Stability& s : stability) add(hash, s.barrier_J);
-    results.back().hash = hash.value();
-    results.push_back(measure_hulls(device, runs));
-    results.push_back(measure_objects(device, runs));
-    return results;
+    return {measure_hulls(device, runs), measure_objects(device, runs)};
 }
 
 }  // namespace topple::perf

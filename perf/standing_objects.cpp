@@ -9,6 +9,7 @@
 #include "graph/contact_graph.h"
 #include "graph/stable_objects.h"
 #include "lab/random.h"
+#include "physics/assess.h"
 #include "physics/drop.h"
 
 namespace topple::simulation {
@@ -195,7 +196,8 @@ StandingScene::StandingScene(device::Device& device, const std::vector<StandingO
     const auto primitives = static_cast<std::int32_t>(object_of_primitive_.size());
     const auto bodies = physics::mass_properties(device, cells_, primitives, density);
     const graph::ContactGraph contacts = graph::build_contact_graph(device, cells_, primitives);
-    table_.emplace(device, cells_, primitives, physics::geodesic_sphere(16));
+    hulls_ =
+        physics::part_hulls(cells_, {}, std::vector<bool>(density.size(), true), device.threads());
     for (std::vector<std::int32_t>& parts : members)
         candidates_.push_back(graph::candidate_of(
             contacts, bodies, std::vector<bool>(static_cast<std::size_t>(primitives)),
@@ -211,12 +213,14 @@ std::vector<physics::Instability> StandingScene::instability() const {
         candidate.edge_drop_m = physics::drops_when_tipped_m(cells_, columns, candidate);
         bodies.push_back(candidate.body);
     }
-    const auto tips = physics::evaluate(device_, *table_, candidates, physics::Passes::exact);
     const std::vector<double> coefficient(bodies.size(), friction);
     const auto slides = physics::slide_all(cells_, object_of_primitive_, bodies, coefficient);
     std::vector<physics::Instability> result;
-    for (std::size_t n = 0; n < candidates.size(); ++n)
-        result.push_back(physics::combine_curves(tips[n], slides[n + 1]));
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        const physics::Stability tips =
+            physics::assess(physics::standing_hull(hulls_, candidates[n]), candidates[n]);
+        result.push_back(physics::combine_curves(tips, slides[n + 1]));
+    }
     return result;
 }
 

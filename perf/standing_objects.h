@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "device/device.h"
+#include "physics/part_hulls.h"
 #include "physics/sliding.h"
 
 // Things of voxels that stand, for barriers to be timed on and to be judged by simulators.
@@ -45,7 +45,7 @@ class StandingScene {
     device::Device& device_;
     SolidCells cells_;
     std::vector<std::int32_t> object_of_primitive_;  // 0: what is fixed
-    std::optional<physics::SupportTable> table_;
+    physics::PartHulls hulls_;
     std::vector<physics::Candidate> candidates_;
 };
 

@@ -8,7 +8,7 @@
 #include "core/room_measures.h"
 #include "device/queue.h"
 #include "io/text.h"
-#include "physics/landscape.h"
+#include "physics/assess.h"
 #include "physics/tipping.h"
 #include "support_function.hpp"
 
@@ -18,7 +18,6 @@ namespace {
 constexpr std::uint64_t direction_block = 32;  // what one work-item takes, on any backend
 // Of the output at once, where it goes to host memory: half of the smallest binding.
 constexpr std::uint64_t tile_values = (std::uint64_t{64} << 20) / sizeof(float);
-constexpr unsigned sphere_frequency = 16;  // of the directions that landscapes are sampled in
 constexpr const char* support_stage = "support_functions";
 constexpr double largest_resolution_m = 1;  // as of voxels
 // Means over the box around a body, kg/m^3: no matter has more; and a rod of wood that leans, in
@@ -154,10 +153,10 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
     require(resolution_m >= 0 && resolution_m <= largest_resolution_m, "barriers",
             "resolution_m " + io::short_number(resolution_m) + ": expected metres from 0 to " +
                 io::short_number(largest_resolution_m));
-    std::vector<std::vector<Vec3>> points;
+    physics::PartHulls parts{{}, resolution_m};
     std::vector<physics::Candidate> candidates;
     for (const StandingBody& body : bodies) {
-        const std::string name = "body " + std::to_string(points.size());
+        const std::string name = "body " + std::to_string(candidates.size());
         require(!body.points.empty(), "barriers", name + " has no points");
         bool finite = std::isfinite(body.mass_kg) && body.mass_kg > 0;
         for (const double c : body.center_of_mass_m) finite = finite && std::isfinite(c);
@@ -174,7 +173,7 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
         check_density(name, body, resolution_m);
         check_center(name, body, resolution_m);
         physics::Candidate c;
-        c.primitives = {static_cast<std::int32_t>(points.size())};
+        c.primitives = {static_cast<std::int32_t>(candidates.size())};
         c.body.mass_kg = body.mass_kg;
         c.body.center = body.center_of_mass_m;
         c.support_height_m = std::numeric_limits<double>::infinity();
@@ -183,17 +182,16 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
         for (const Vec3& p : body.points) {
             if (p[2] <= c.support_height_m + resolution_m) bearing.push_back({p[0], p[1]});
         }
-        points.emplace_back(body.points.begin(), body.points.end());
+        parts.corners.emplace_back(body.points.begin(), body.points.end());
         c.support_polygon = physics::convex_polygon(bearing);
         candidates.push_back(std::move(c));
     }
-    const physics::SupportTable table(device, points, resolution_m,
-                                      physics::geodesic_sphere(sphere_frequency));
-    std::vector<Barrier> out;
-    for (physics::Stability& s :
-         physics::evaluate(device, table, candidates, physics::Passes::exact)) {
-        out.push_back({s.barrier_J, s.release_J, s.easiest.direction, std::move(s.curve)});
-    }
+    std::vector<Barrier> out(bodies.size());
+    device.threads().each(bodies.size(), 1, [&](std::size_t n) {
+        physics::Stability s =
+            physics::assess(physics::standing_hull(parts, candidates[n]), candidates[n]);
+        out[n] = {s.barrier_J, s.release_J, s.easiest.direction, std::move(s.curve)};
+    });
     return out;
 }
 

@@ -339,6 +339,10 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option("--seed", a->options.seed, "Seed of everything random")
         ->check(whole_number)
         ->capture_default_str();
+    app.add_option("--stability-level", a->options.stability_level,
+                   "How far an object must stay put to be one by itself: the disturbance W of\n"
+                   "the paper's Eq. 8, as a share of m g h; with more, more is one with the floor")
+        ->capture_default_str();
     app.add_option("--grouping-time", a->options.grouping_time_s,
                    "Seconds for the search for objects, about; where that is too few, the\n"
                    "objects depend on the machine (default: as long as it takes)");

@@ -52,6 +52,8 @@ inline constexpr NumberOption number_options[] = {
     {"pga_m_s2", &ParseOptions::pga_m_s2, &topple_options::pga_m_s2, 0, 50},
     {"floor_amplification", &ParseOptions::floor_amplification,
      &topple_options::floor_amplification, 0, 20},
+    {"stability_level", &ParseOptions::stability_level, &topple_options::stability_level, 0, 10,
+     true},
     {"tolerable_J", &ParseOptions::tolerable_J, &topple_options::tolerable_J, 0, 1e9},
     // Tiles hold at least a block, tiles::block_edge_m.
     {"tile_m", &ParseOptions::tile_m, &topple_options::tile_m, 5, 1000, true},

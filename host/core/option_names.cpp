@@ -41,6 +41,7 @@ constexpr auto names = std::to_array<OptionName>({
     {"ParseOptions::isolate", "--no-isolate", "without_isolation", "isolate"},
     {"ParseOptions::corrections", "--corrections", "corrections_json", "corrections"},
     {"ParseOptions::cache_file", "--cache", "cache_file", "cache_file"},
+    {"ParseOptions::stability_level", "--stability-level", "stability_level", "stability_level"},
     {"ParseOptions::grouping_time_s", "--grouping-time", "grouping_time_s", "grouping_time_s"},
     {"ParseOptions::tile_m", "--tile", "tile_m", "tile_m"},
     {"MotionFileOptions::unit_m", "--motion-unit", none, "motion_unit"},

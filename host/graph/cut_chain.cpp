@@ -29,7 +29,7 @@ Adjacency::Adjacency(std::int32_t nodes, std::span<const Edge> edges)
     }
 }
 
-CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random random,
+CutChain::CutChain(const CutProblem& problem, const EnergyCache& energies, Random random,
                    TableView<NodeId, std::int32_t> start)
     : problem_(problem),
       energies_(energies),
@@ -44,19 +44,25 @@ CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random rand
       own_(problem.key.size()),
       seen_label_(members_.size()),
       log_miss_to_(members_.size()) {
-    begin(start);
+    group_by(start);
     for (std::size_t e = 0; e < problem.edges.size(); ++e) {
         if (label_of(problem.edges[e].a) == label_of(problem.edges[e].b)) joints_.join(e, 0);
     }
-    for (std::size_t l = 0; l < members_.size(); ++l) missing_.push_back({key_[l], group(l)});
-    energies_.fetch(missing_);
+}
+
+bool CutChain::begin() {
+    wanted_.clear();
+    for (std::size_t l = 0; l < members_.size(); ++l)
+        if (!energies_.known(key_[l])) want(key_[l], group(l));
+    if (!wanted_.empty()) return false;
     for (std::size_t l = 0; l < members_.size(); ++l) {
         energy_of_label_[l] = *energies_.known(key_[l]);
         energy_ += energy_of_label_[l];
     }
+    return true;
 }
 
-void CutChain::begin(TableView<NodeId, std::int32_t> start) {
+void CutChain::group_by(TableView<NodeId, std::int32_t> start) {
     // What shares a label with a pinned node is in its group; the others' labels are their lowest
     // nodes' numbers.
     std::map<std::int32_t, std::int32_t> label_of_start;
@@ -72,41 +78,48 @@ void CutChain::begin(TableView<NodeId, std::int32_t> start) {
     }
 }
 
-void CutChain::step(double temperature) {
-    const bool possible = draw();
-    // Drawn always, so that the stream of random numbers doesn't depend on the outcome.
-    const double u = random_.uniform();
-    if (!possible) return;
-    // Metropolis-Hastings, Eq. 11: taken for a change of the energy below this one, that is for
-    // ln u < ln ratio - change / T.
-    const double most_change =
-        temperature * (log_cut_ratio_ - std::log(std::max(u, std::numeric_limits<double>::min())));
-    if (ruled_out(most_change)) return;
-    fetch_energies();
-    if (change(from_energy_, to_energy_) < most_change) take();
+bool CutChain::step(double temperature) {
+    if (!proposed_) {
+        const bool possible = draw();
+        // Drawn always, so that the stream of random numbers doesn't depend on the outcome.
+        const double u = random_.uniform();
+        if (!possible) return true;
+        // Metropolis-Hastings, Eq. 11: taken for a change of the energy below this one, that is for
+        // ln u < ln ratio - change / T.
+        most_change_ = temperature *
+                       (log_cut_ratio_ - std::log(std::max(u, std::numeric_limits<double>::min())));
+        if (ruled_out(most_change_)) return true;
+    }
+    proposed_ = !find_energies();
+    if (proposed_) return false;
+    if (change(from_energy_, to_energy_) < most_change_) take();
+    return true;
 }
 
 bool CutChain::ruled_out(double most_change) {
-    for (std::size_t n = 0; n < energies_.bounds(); ++n) {
-        const double from = energies_.at_least(from_key_, n, [&] { return group_less_moved(); });
-        const double to = energies_.at_least(to_key_, n, [&] { return group_with_moved(); });
+    for (std::size_t n = 0; n < energies_.energies().at_least.size(); ++n) {
+        const double from =
+            bounds_.at_least(energies_, from_key_, n, [&] { return group_less_moved(); });
+        const double to =
+            bounds_.at_least(energies_, to_key_, n, [&] { return group_with_moved(); });
         if (change(from, to) >= most_change) return true;
     }
     return false;
 }
 
-void CutChain::fetch_energies() {
-    std::optional<double> from = energies_.known(from_key_), to = energies_.known(to_key_);
-    if (!from || !to) {
-        missing_.clear();
-        if (!from) missing_.push_back({from_key_, group_less_moved()});
-        if (!to) missing_.push_back({to_key_, group_with_moved()});
-        energies_.fetch(missing_);
-        from = energies_.known(from_key_);
-        to = energies_.known(to_key_);
-    }
+void CutChain::want(const GroupKey& key, GroupQuery group) {
+    wanted_.push_back({key, std::move(group)});
+}
+
+bool CutChain::find_energies() {
+    wanted_.clear();
+    const std::optional<double> from = energies_.known(from_key_), to = energies_.known(to_key_);
+    if (!from) want(from_key_, group_less_moved());
+    if (!to) want(to_key_, group_with_moved());
+    if (!wanted_.empty()) return false;
     from_energy_ = *from;
     to_energy_ = *to;
+    return true;
 }
 
 void CutChain::take() {

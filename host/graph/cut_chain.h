@@ -72,15 +72,19 @@ class JointCounts {
     std::vector<std::uint64_t> count_, since_;
 };
 
-// One Markov chain of Swendsen-Wang cuts.
+// One Markov chain of Swendsen-Wang cuts. Where it needs energies that the cache lacks it waits:
+// what it does is then false, and is to be done again once the cache has what is wanted().
 class CutChain {
   public:
     // start: see SwendsenWangOptions.
-    CutChain(const CutProblem& problem, EnergyCache& energies, Random random,
+    CutChain(const CutProblem& problem, const EnergyCache& energies, Random random,
              TableView<NodeId, std::int32_t> start = {});
 
+    // Takes the energy of the start; before all steps.
+    bool begin();
     // Proposes one flip and takes it or leaves it.
-    void step(double temperature);
+    bool step(double temperature);
+    const std::vector<EnergyCache::Missing>& wanted() const { return wanted_; }
 
     double energy() const { return energy_; }
     const std::vector<std::int32_t>& labels() const { return label_; }
@@ -105,14 +109,16 @@ class CutChain {
     bool stays_connected();
     bool reaches(NodeId start, bool shell);
     LabelId free_label();
-    void begin(TableView<NodeId, std::int32_t> start);
+    void group_by(TableView<NodeId, std::int32_t> start);
     double change(double from_after, double to_after) const;
     bool ruled_out(double most_change);
-    void fetch_energies();
+    void want(const GroupKey& key, GroupQuery group);
+    bool find_energies();
     void take();
 
     const CutProblem& problem_;
-    EnergyCache& energies_;
+    const EnergyCache& energies_;
+    LowerBounds bounds_;
     Random random_;
     Table<NodeId, std::int32_t> label_;
     Table<LabelId, Group> members_;
@@ -127,6 +133,8 @@ class CutChain {
     // The flip that is proposed, and the groups after it.
     std::vector<std::int32_t> moved_;
     LabelId from_ = 0, to_ = 0;
+    double most_change_ = 0;    // of the energy, with which it is taken
+    bool proposed_ = false;     // and waits for energies
     double log_cut_ratio_ = 0;  // ln of the products of (1 - q_e) in Eq. 11
     GroupKey from_key_, to_key_;
     double from_energy_ = 0, to_energy_ = 0;
@@ -135,7 +143,7 @@ class CutChain {
     StampedSet is_moved_, seen_, own_, seen_label_;
     std::vector<std::int32_t> targets_, border_, open_;
     Table<LabelId, double> log_miss_to_;
-    std::vector<EnergyCache::Missing> missing_;
+    std::vector<EnergyCache::Missing> wanted_;
 };
 
 }  // namespace topple::graph

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <condition_variable>
-#include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <limits>
-#include <mutex>
 #include <optional>
-#include <span>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "graph/swendsen_wang.h"
@@ -27,61 +21,57 @@ struct GroupKey {
         return *this;
     }
     bool operator==(const GroupKey&) const = default;
+    struct Hash {
+        std::size_t operator()(const GroupKey& k) const { return k.low; }
+    };
 };
 std::vector<GroupKey> keys_of_nodes(std::int32_t nodes);
 
-// Energies by group, asked for once each, by several threads. One of them evaluates at a time, what
-// it and others asked for meanwhile.
+// Energies by group, asked for once each.
 class EnergyCache {
   public:
     struct Missing {
         GroupKey key;
         GroupQuery query;
     };
-    explicit EnergyCache(const GroupEnergies& energies);
+    explicit EnergyCache(const GroupEnergies& energies) : energies_(energies) { known_[{}] = 0; }
 
-    std::size_t bounds() const { return energies_.at_least.size(); }
+    // From any threads, between calls of evaluate().
+    std::optional<double> known(const GroupKey& key) const;
+    const GroupEnergies& energies() const { return energies_; }
+    std::uint64_t evaluated() const { return known_.size() - 1; }
 
+    // In one batch.
+    void evaluate(std::vector<Missing> wanted);
+
+  private:
+    const GroupEnergies& energies_;
+    std::unordered_map<GroupKey, double, GroupKey::Hash> known_;
+};
+
+// What the energies of groups are at least, as one chain finds it out, bound by bound.
+class LowerBounds {
+  public:
     // Takes the bounds up to the nth one into account, or the energy itself where it is known.
     // `group` gives the query; it is not called for what is known.
     template <class Group>
-    double at_least(const GroupKey& key, std::size_t n, const Group& group) {
-        Entry entry = copy(key);
-        if (entry.exact || entry.bounds > n) return entry.value;
+    double at_least(const EnergyCache& cache, const GroupKey& key, std::size_t n,
+                    const Group& group) {
+        if (const auto energy = cache.known(key)) return *energy;
+        Bound& bound = bounds_[key];
+        if (bound.used > n) return bound.value;
         const GroupQuery query = group();
-        for (; entry.bounds <= n; ++entry.bounds)
-            entry.value = energies_.at_least[entry.bounds](query, entry.value);
-        return raise(key, entry);
+        for (; bound.used <= n; ++bound.used)
+            bound.value = cache.energies().at_least[bound.used](query, bound.value);
+        return bound.value;
     }
-    std::optional<double> known(const GroupKey& key);
-
-    // Blocks until all of them are known. Throws what the energies throw, to all that wait.
-    void fetch(std::vector<Missing>& missing);
-
-    std::uint64_t evaluated() const { return evaluated_; }
 
   private:
-    struct Entry {
-        double value = -std::numeric_limits<double>::infinity();  // or a lower bound
-        std::size_t bounds = 0;                                   // that went into it
-        bool exact = false, asked = false;
+    struct Bound {
+        double value = -std::numeric_limits<double>::infinity();
+        std::size_t used = 0;
     };
-    struct Hash {
-        std::size_t operator()(const GroupKey& k) const { return k.low; }
-    };
-    Entry copy(const GroupKey& key);
-    double raise(const GroupKey& key, const Entry& bound);
-    void await(std::vector<Missing>& missing, std::unique_lock<std::mutex>& lock);
-    void evaluate(std::unique_lock<std::mutex>& lock);
-
-    const GroupEnergies& energies_;
-    std::mutex mutex_;  // of all below
-    std::condition_variable evaluated_some_;
-    std::unordered_map<GroupKey, Entry, Hash> known_;
-    std::vector<Missing> wanted_;
-    bool evaluating_ = false;
-    std::uint64_t evaluated_ = 0;
-    std::exception_ptr failure_;
+    std::unordered_map<GroupKey, Bound, GroupKey::Hash> bounds_;
 };
 
 }  // namespace topple::graph

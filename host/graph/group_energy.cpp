@@ -2,28 +2,26 @@
 #include "graph/group_energy.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "physics/tipping.h"
 
 namespace topple::graph {
 
-GroupEnergy::GroupEnergy(const ContactGraph& contacts,
+GroupEnergy::GroupEnergy(device::Device& device, const ContactGraph& contacts,
                          TableView<PrimitiveId, physics::MassProperties> bodies,
                          std::span<const Joint> joints, const ShellOdds& shell,
-                         double standing_weight)
-    : contacts_(contacts),
-      bodies_(bodies),
+                         double standing_weight, double stability_level)
+    : voxel_m_(contacts.voxel_m),
       shell_(shell),
       standing_weight_(standing_weight),
-      neighbours_(bodies.size()) {
+      stability_level_(stability_level),
+      neighbours_(bodies.size()),
+      stances_(device, contacts, bodies, shell.pinned) {
     for (const Joint& j : joints) neighbours_[j.a].push_back({j.b, j.log_odds});
 }
 
 double GroupEnergy::joined(const GroupQuery& query) const {
     const ScratchSets::Lent lent(members_);
     StampedSet& members = *lent;
-    members.clear(bodies_.size());
+    members.clear(neighbours_.size());
     for (const std::int32_t n : query.nodes) members.add(n);
     double sum = 0;
     for (const PrimitiveId p : query.nodes) {
@@ -39,24 +37,28 @@ double GroupEnergy::joined(const GroupQuery& query) const {
     return sum;
 }
 
-double GroupEnergy::standing(const GroupQuery& query) const {
-    if (query.pinned || query.nodes.empty()) return 0;
-    return standing_weight_ *
-           standing_cost(candidate_of(contacts_, bodies_, shell_.pinned, query.nodes),
-                         contacts_.voxel_m);
+void GroupEnergy::of(std::span<const GroupQuery> queries, std::span<double> energies) {
+    std::vector<GroupQuery> standing;
+    std::vector<std::size_t> number;
+    for (std::size_t n = 0; n < queries.size(); ++n) {
+        energies[n] = joined(queries[n]);
+        if (queries[n].pinned || queries[n].nodes.empty()) continue;
+        standing.push_back(queries[n]);
+        number.push_back(n);
+    }
+    const std::vector<Stance> stances = stances_.of(standing);
+    for (std::size_t n = 0; n < stances.size(); ++n)
+        energies[number[n]] +=
+            standing_weight_ * standing_cost(stances[n], voxel_m_, stability_level_);
 }
 
-double GroupEnergy::operator()(const GroupQuery& query) const {
-    return joined(query) + standing(query);
-}
-
-GroupEnergies GroupEnergy::callbacks() const {
-    const auto energy = [this](std::span<const GroupQuery> queries, std::span<double> energies) {
-        for (std::size_t n = 0; n < queries.size(); ++n) energies[n] = (*this)(queries[n]);
-    };
+GroupEnergies GroupEnergy::callbacks() {
     // Standing never costs less than nothing.
     const auto joints_alone = [this](const GroupQuery& query, double) { return joined(query); };
-    return {energy, {joints_alone}};
+    return {[this](std::span<const GroupQuery> queries, std::span<double> energies) {
+                of(queries, energies);
+            },
+            {joints_alone}};
 }
 
 }  // namespace topple::graph

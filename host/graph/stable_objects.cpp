@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -12,7 +11,6 @@
 #include "graph/greedy_contraction.h"
 #include "graph/group_energy.h"
 #include "graph/outline.h"
-#include "physics/tipping.h"
 #include "solids/cell_shape.h"
 
 namespace topple::graph {
@@ -67,41 +65,35 @@ physics::Candidate candidate_of(const ContactGraph& graph,
     return candidate;
 }
 
-double standing_cost(const physics::Candidate& c, double noise_m) {
-    constexpr double unseen_support = 0.05;  // share of what stands whose support no scan shows
-    const double worst = -std::log(unseen_support);
-    if (c.body.mass_kg <= 0) return 0;
-    if (c.support_polygon.empty()) return worst;
-    const double margin =
-        physics::footing(c.support_polygon, c.body.center[0], c.body.center[1]).margin_m;
-    const double stands = 0.5 * std::erfc(-margin / (noise_m * std::numbers::sqrt2));
-    return std::min(worst, -std::log(std::max(stands, unseen_support)));
-}
-
-Grouping group_primitives(const ContactGraph& graph,
+Grouping group_primitives(device::Device& device, const ContactGraph& graph,
                           TableView<PrimitiveId, physics::MassProperties> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
-                          const GroupingOptions& options, unsigned threads) {
+                          const GroupingOptions& options) {
     const std::vector<Joint> biased = biased_joints(joints, options.joint_bias);
-    const GroupEnergy energy(graph, bodies, biased, shell, options.standing_weight);
+    GroupEnergy energy(device, graph, bodies, biased, shell, options.standing_weight,
+                       options.stability_level);
     // What is one object for sure is one node.
     const LinkedNodes nodes(graph.primitives, options.links);
     const std::vector<Joint> joints_of_nodes = nodes.joints(biased);
     const std::vector<bool> pinned = nodes.pinned(shell.pinned);
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
-    sampler.chains = 4;
-    sampler.threads = threads;
+    sampler.chains = 8;
+    sampler.threads = &device.threads();
     sampler.apart = nodes.apart();
-    sampler.start = contract_greedily(nodes.size(), joints_of_nodes, pinned,
-                                      nodes.sums(shell.log_odds), sampler.apart);
-    // The start is near the best: what is left is to weigh how things stand, and to look whether a
+    // Independent starts: what is one group from all of them, whatever the joints' bias, is sure.
+    for (const double doubt : {0.0, 1.0, -1.0})
+        sampler.starts.push_back(contract_greedily(
+            nodes.size(), nodes.joints(biased_joints(joints, options.joint_bias - doubt)), pinned,
+            nodes.sums(shell.log_odds), sampler.apart));
+    sampler.starts.emplace_back();  // each node on its own
+    // The first is near the best: what is left is to weigh how things stand, and to look whether a
     // few parts are better elsewhere.
     sampler.first_temperature = 0.5;
     sampler.last_temperature = 0.02;
     sampler.sample_temperature = 1;
     sampler.anneal_steps =
-        static_cast<unsigned>(std::clamp<std::int64_t>(20 * graph.primitives, 1000, 200'000));
+        static_cast<unsigned>(std::clamp<std::int64_t>(5 * graph.primitives, 1000, 50'000));
     sampler.sample_steps = sampler.anneal_steps / 4;
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;

@@ -27,7 +27,8 @@ struct GroupingOptions {
     // the joints' log-odds, and the bias of each joint (graph/joints.h), nats.
     double standing_weight = 0.3;
     double joint_bias = -1.3;
-    double time_limit_s = 0;  // see SwendsenWangOptions
+    double stability_level = 0;  // W of S(O, W), as a share of m g h
+    double time_limit_s = 0;     // see SwendsenWangOptions
     std::function<bool()> cancelled;
     KnownLinks links;
 };
@@ -47,17 +48,12 @@ physics::Candidate candidate_of(const ContactGraph& graph,
                                 const Table<PrimitiveId, bool>& shell,
                                 std::vector<std::int32_t> primitives);
 
-// S(O, W) as W goes to 0, in nats: -ln P(the body stands by itself), where the border of its
-// support is known to about `noise_m`. What stands, however precariously, costs next to nothing;
-// what lies on nothing that was seen costs most, but no more than scans hide supports.
-double standing_cost(const physics::Candidate& candidate, double noise_m);
-
 // Minimises Eq. 8 by Swendsen-Wang cuts with q = P(joint), from the greedy contraction of the
 // joints on, over the groupings that keep to the links that are known. joints: sorted by (a, b).
-Grouping group_primitives(const ContactGraph& graph,
+Grouping group_primitives(device::Device& device, const ContactGraph& graph,
                           TableView<PrimitiveId, physics::MassProperties> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
-                          const GroupingOptions& options, unsigned threads);
+                          const GroupingOptions& options);
 
 // That both are one solid, of each of the graph's pairs: as it is known, by their joint, or as
 // parts of the room. joints: sorted by (a, b); they may be those of another graph of the same

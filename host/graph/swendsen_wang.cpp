@@ -5,9 +5,12 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <thread>
 
 #include "core/random.h"
@@ -33,8 +36,7 @@ struct Outcome {
 // where that is short.
 class Schedule {
   public:
-    Schedule(const SwendsenWangOptions& options, double time_limit_s)
-        : options_(options), limit_s_(time_limit_s) {}
+    explicit Schedule(const SwendsenWangOptions& options) : options_(options) {}
 
     double at(unsigned step) const {
         const double by_steps =
@@ -42,9 +44,9 @@ class Schedule {
                 ? step / static_cast<double>(options_.anneal_steps)
                 : 1 + (step - options_.anneal_steps) /
                           static_cast<double>(std::max(1u, options_.sample_steps));
-        if (limit_s_ <= 0) return by_steps;
+        if (options_.time_limit_s <= 0) return by_steps;
         const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-        return std::max(by_steps, 2 * elapsed / limit_s_);
+        return std::max(by_steps, 2 * elapsed / options_.time_limit_s);
     }
     double temperature(double along) const {
         if (along >= 1) return options_.sample_temperature;
@@ -54,35 +56,66 @@ class Schedule {
 
   private:
     const SwendsenWangOptions& options_;
-    double limit_s_;
     Clock::time_point start_ = Clock::now();
 };
 
-Outcome run_chain(const CutProblem& problem, EnergyCache& cache, const Random& random,
-                  const SwendsenWangOptions& options, double time_limit_s,
-                  const std::function<bool()>& stopped) {
-    const Schedule schedule(options, time_limit_s);
-    CutChain chain(problem, cache, random, options.start);
-    Outcome out{chain.labels(), chain.energy(), {}, {}, 0};
-    for (unsigned step = 0; step < options.anneal_steps + options.sample_steps; ++step) {
-        const double along = schedule.at(step);
-        if (along >= 2 || stopped()) break;
-        chain.step(schedule.temperature(along));
-        // A margin, so that rounding in the running sum is not taken for an improvement.
-        if (chain.energy() < out.best_energy - 1e-9) {
-            out.best_energy = chain.energy();
-            out.best_labels = chain.labels();
+// A chain on its way.
+class Run {
+  public:
+    Run(const CutProblem& problem, const EnergyCache& cache, std::size_t number,
+        const SwendsenWangOptions& options)
+        : problem_(problem),
+          options_(options),
+          schedule_(options),
+          chain_(problem, cache, Random(options.seed).split(number), start_of(number, options)) {}
+
+    // Until it is done, or waits for energies: whether it does that.
+    bool waits(const std::function<bool()>& stopped) {
+        if (!begun_) {
+            if (!chain_.begin()) return true;
+            begun_ = true;
+            out_.best_labels = chain_.labels();
+            out_.best_energy = chain_.energy();
         }
-        if (along < 1)
-            out.best_energy_curve.push_back(out.best_energy);
-        else
-            chain.take_sample();
+        for (; step_ < options_.anneal_steps + options_.sample_steps; ++step_) {
+            const double along = schedule_.at(step_);
+            if (along >= 2 || stopped()) break;
+            if (!chain_.step(schedule_.temperature(along))) return true;
+            // A margin, so that rounding in the running sum is not taken for an improvement.
+            if (chain_.energy() < out_.best_energy - 1e-9) {
+                out_.best_energy = chain_.energy();
+                out_.best_labels = chain_.labels();
+            }
+            if (along < 1)
+                out_.best_energy_curve.push_back(out_.best_energy);
+            else
+                chain_.take_sample();
+        }
+        return false;
     }
-    out.samples = chain.samples();
-    for (std::size_t e = 0; e < problem.edges.size(); ++e)
-        out.joined.push_back(chain.samples_joined(e));
-    return out;
-}
+    const std::vector<EnergyCache::Missing>& wanted() const { return chain_.wanted(); }
+
+    Outcome outcome() && {
+        out_.samples = chain_.samples();
+        for (std::size_t e = 0; e < problem_.edges.size(); ++e)
+            out_.joined.push_back(chain_.samples_joined(e));
+        return std::move(out_);
+    }
+
+  private:
+    static TableView<NodeId, std::int32_t> start_of(std::size_t number,
+                                                    const SwendsenWangOptions& options) {
+        if (options.starts.empty()) return {};
+        return options.starts[number % options.starts.size()];
+    }
+    const CutProblem& problem_;
+    const SwendsenWangOptions& options_;
+    Schedule schedule_;
+    CutChain chain_;
+    Outcome out_;
+    bool begun_ = false;
+    unsigned step_ = 0;
+};
 
 std::vector<std::int32_t> canonical(const std::vector<std::int32_t>& labels) {
     std::map<std::int32_t, std::int32_t> number{{pinned_label, -1}};
@@ -170,11 +203,7 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
                              const SwendsenWangOptions& options) {
     if (nodes == 0) return {};
     const CutProblem problem(nodes, edges, pinned, options.apart);
-    const unsigned chains = std::max(1u, options.chains);
-    const unsigned workers = std::clamp(options.threads, 1u, chains);
-    const double limit_s = options.time_limit_s * workers / chains;
     EnergyCache cache(energies);
-    std::vector<Outcome> outcomes(chains);
     std::atomic<bool> cancelled = false;
     const auto here = std::this_thread::get_id();
     const auto stopped = [&] {
@@ -183,10 +212,24 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
             cancelled = true;
         return cancelled.load();
     };
-    ThreadPool(workers).each(chains, 1, [&](std::size_t c) {
-        outcomes[c] =
-            run_chain(problem, cache, Random(options.seed).split(c), options, limit_s, stopped);
-    });
+    std::deque<Run> runs;
+    std::vector<std::size_t> open(std::max(1u, options.chains));
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    for (const std::size_t c : open) runs.emplace_back(problem, cache, c, options);
+    ThreadPool alone(1);
+    ThreadPool& threads = options.threads ? *options.threads : alone;
+    std::vector<std::uint8_t> waits(runs.size());
+    while (!open.empty()) {
+        threads.each(open.size(), 1,
+                     [&](std::size_t n) { waits[open[n]] = runs[open[n]].waits(stopped); });
+        std::erase_if(open, [&](std::size_t c) { return !waits[c]; });
+        std::vector<EnergyCache::Missing> wanted;
+        for (const std::size_t c : open)
+            wanted.insert(wanted.end(), runs[c].wanted().begin(), runs[c].wanted().end());
+        if (!wanted.empty()) cache.evaluate(std::move(wanted));
+    }
+    std::vector<Outcome> outcomes;
+    for (Run& run : runs) outcomes.push_back(std::move(run).outcome());
     Partition result = combined(outcomes, edges.size());
     result.energies_evaluated = cache.evaluated();
     return result;

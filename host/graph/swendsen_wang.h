@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/table.h"
+#include "core/thread_pool.h"
 
 // Swendsen-Wang cuts over partitions of a graph (Barbu and Zhu 2005; paper, 4.3, Algorithm 1).
 namespace topple::graph {
@@ -28,7 +29,8 @@ struct GroupQuery {
     Group nodes;
     bool pinned = false;
 };
-// Called from several threads: `of` by one of them at a time, the bounds by all at once.
+// `of` is called by the sampler's thread, with what all chains want at a time; the bounds by
+// several at once.
 struct GroupEnergies {
     std::function<void(std::span<const GroupQuery>, std::span<double>)> of;
     // What a group's energy is at least, by ways that cost ever more and tell ever more, each given
@@ -40,7 +42,7 @@ struct GroupEnergies {
 struct SwendsenWangOptions {
     std::uint64_t seed = 1;
     unsigned chains = 8;             // independent
-    unsigned threads = 1;            // that the chains share; the result does not depend on them
+    ThreadPool* threads = nullptr;   // that the chains share; the result does not depend on them
     unsigned anneal_steps = 2000;    // flips per chain while cooling
     unsigned sample_steps = 2000;    // flips per chain at the sampling temperature
     double first_temperature = 1.0;  // of p ~ exp(-E / T)
@@ -49,11 +51,11 @@ struct SwendsenWangOptions {
     // Seconds for all, about; annealing and sampling are sped up to fit. 0: as long as they take. A
     // limit that is met makes the result depend on the machine.
     double time_limit_s = 0;
-    // The partition to start from: nodes of one group have one label, pinned nodes share theirs.
-    // Empty: each node on its own.
-    Table<NodeId, std::int32_t> start;
+    // Partitions that the chains start from in turn: nodes of one group have one label, pinned
+    // nodes share theirs. An empty one, or none at all: each node on its own.
+    std::vector<Table<NodeId, std::int32_t>> starts;
     // Of each node those that no group may hold beside it; empty: there are none. Symmetric, not of
-    // two pinned nodes, and `start` keeps to it. Flips that would break it are not proposed.
+    // two pinned nodes, and starts keep to it. Flips that would break it are not proposed.
     Table<NodeId, std::vector<std::int32_t>> apart;
     std::function<bool()> cancelled;  // polled between steps by the caller's thread; may be empty
 };
@@ -67,15 +69,13 @@ struct Partition {
     Table<GroupId, double> agreement;
     std::vector<double> joined;  // per edge: share of sampled states with both ends in one group
     std::vector<double> best_energy_curve;  // after every step of the annealing, over all chains
-    std::uint64_t energies_evaluated = 0;   // groups asked for; with several threads it may differ
-                                            // a little from run to run
+    std::uint64_t energies_evaluated = 0;   // groups asked for
 };
 
-// Starts from one group per node (pinned nodes together), or from `start`, and returns the best
-// partition seen, and the joint probabilities of the states sampled after that. A flip moves one
-// connected component of turned-on edges to the group of one of its neighbours, or to a fresh
-// group; it is accepted with the probability of Barbu and Zhu's Theorem 1 (paper, Eq. 11).
-// Deterministic.
+// Returns the best partition seen, which is no worse than any start, and the joint probabilities of
+// the states sampled after that. A flip moves one connected component of turned-on edges to the
+// group of one of its neighbours, or to a fresh group; it is accepted with the probability of Barbu
+// and Zhu's Theorem 1 (paper, Eq. 11). Deterministic.
 Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
                              const Table<NodeId, bool>& pinned, const GroupEnergies& energies,
                              const SwendsenWangOptions& options);

@@ -11,19 +11,18 @@
 #include "geometry/primitive_shapes.h"
 #include "graph/false_feet.h"
 #include "objects/find_hidden_walls.h"
+#include "physics/assess.h"
 #include "physics/body_landscape.h"
 #include "physics/directions.h"
 #include "physics/drop.h"
 #include "physics/leaning.h"
 #include "physics/overturning.h"
-#include "physics/solid_hulls.h"
-#include "solids/cell_shape.h"
+#include "physics/part_hulls.h"
 
 namespace topple {
 namespace {
 
 // 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
-constexpr unsigned sphere_frequency = 16;
 
 graph::ShellOdds shell_odds(Table<PrimitiveId, double> log_odds) {
     graph::ShellOdds out;
@@ -181,7 +180,7 @@ Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId
     return out;
 }
 
-void find_barriers(device::Device& device, const physics::SupportTable& table,
+void find_barriers(device::Device& device, const physics::PartHulls& parts,
                    const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
                    double friction, std::vector<Body>& objects, const Unseen& unseen) {
     const SolidCells& cells = solids.cells();
@@ -195,20 +194,18 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                 physics::drops_when_tipped_m(cells, columns, o.candidate, unseen);
         candidates.push_back(o.candidate);
     }
-    std::vector<physics::Stability> tipping =
-        physics::evaluate(device, table, candidates, physics::Passes::exact);
-    std::vector<physics::Stability> level = tipping;
-    std::vector<std::size_t> dropping;
-    std::vector<physics::Candidate> held;
-    for (std::size_t o = 0; o < candidates.size(); ++o) {
-        const auto& drops = candidates[o].edge_drop_m;
-        if (std::ranges::none_of(drops, [](double drop) { return drop > 0; })) continue;
-        dropping.push_back(o);
-        held.push_back(candidates[o]);
-        held.back().edge_drop_m.clear();
-    }
-    const auto on_level = physics::evaluate(device, table, held, physics::Passes::exact);
-    for (std::size_t n = 0; n < dropping.size(); ++n) level[dropping[n]] = on_level[n];
+    std::vector<physics::StandingHull> hulls(objects.size());
+    std::vector<physics::Stability> tipping(objects.size()), level(objects.size());
+    device.threads().each(objects.size(), 1, [&](std::size_t o) {
+        const physics::Candidate& c = candidates[o];
+        hulls[o] = physics::standing_hull(parts, c);
+        tipping[o] = physics::assess(hulls[o], c);
+        level[o] = tipping[o];
+        if (std::ranges::none_of(c.edge_drop_m, [](double drop) { return drop > 0; })) return;
+        physics::Candidate on_level = c;
+        on_level.edge_drop_m.clear();
+        level[o] = physics::assess(hulls[o], on_level);
+    });
     std::vector<physics::MassProperties> bodies;
     // What is fixed to the ground does not slide: no mass, nothing to search.
     for (const Body& o : objects)
@@ -257,7 +254,8 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         if (!candidates[o].support_polygon.empty())
             objects[o].toppling = std::make_shared<physics::Toppling>(
                 toppling_of(objects[o], objects[o].tipping, friction));
-        objects[o].poses = physics::body_landscape(table, candidates[o], objects[o].tipping.ways);
+        objects[o].poses =
+            physics::body_landscape(hulls[o], candidates[o], objects[o].tipping.ways);
     });
 }
 
@@ -273,12 +271,13 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
     stage("grouping", [&] {
         graph::GroupingOptions grouping;
         grouping.seed = options.seed;
+        grouping.stability_level = options.stability_level;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
         grouping.links = hand.links();
         hand.keep_apart(*solid.solids, parts.shell);
-        out.grouping = graph::group_primitives(parts.contacts, parts.bodies, parts.joints,
-                                               parts.shell, grouping, device.threads().threads());
+        out.grouping = graph::group_primitives(device, parts.contacts, parts.bodies, parts.joints,
+                                               parts.shell, grouping);
         out.taken = hand.take_from(solid, out.grouping, parts.shell, parts.joints);
         hand.fix(solid, out.grouping, parts.shell);
         number_objects(out);
@@ -299,20 +298,17 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         "borders", [&] { return graph::build_contact_graph(device, cells, count, boundary); });
     out.pair_probability =
         graph::pair_probabilities(out.contacts, parts.joints, parts.shell, hand.links());
-    const physics::SupportTable table = stage("supports", [&] {
+    const physics::PartHulls hulls = stage("supports", [&] {
         std::vector<bool> loose;
         for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
-        return physics::SupportTable(device,
-                                     physics::solid_hulls(cells, boundary, loose, device.threads()),
-                                     solids::form_error_m(boundary, cells.voxel_m),
-                                     physics::geodesic_sphere(sphere_frequency));
+        return physics::part_hulls(cells, boundary, loose, device.threads());
     });
     stage("barriers", [&] {
         collect_objects(*solid.solids, parts.shell.pinned, solid.sensed != nullptr, options,
                         device.threads(), hand, out);
         out.hidden_walls = find_hidden_walls(
             solid, out.object_of_primitive, fixed_primitives(out.object_of_primitive, out.objects));
-        find_barriers(device, table, *solid.solids, out.hidden_walls, out.object_of_primitive,
+        find_barriers(device, hulls, *solid.solids, out.hidden_walls, out.object_of_primitive,
                       options.friction, out.objects, unseen_of(solid));
     });
     doubt_objects(parts.joints, hand.links(), cells, out);

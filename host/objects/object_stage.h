@@ -23,6 +23,7 @@
 #include "physics/hidden_walls.h"
 #include "physics/inertia.h"
 #include "physics/landscape.h"
+#include "physics/part_hulls.h"
 #include "physics/sliding.h"
 #include "physics/toppling.h"
 #include "solids/solid_parts.h"
@@ -98,7 +99,7 @@ Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
 // their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
 // falls, and so do walls behind what hides them.
-void find_barriers(device::Device& device, const physics::SupportTable& table,
+void find_barriers(device::Device& device, const physics::PartHulls& parts,
                    const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
                    double friction, std::vector<Body>& objects, const Unseen& unseen = {});
 

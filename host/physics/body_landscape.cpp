@@ -7,7 +7,6 @@
 
 #include "core/union_find.h"
 #include "physics/hull_landscape.h"
-#include "physics/standing_hull.h"
 
 namespace topple::physics {
 namespace {
@@ -130,12 +129,11 @@ void join_poses(Landscape& l) {
 
 }  // namespace
 
-Landscape body_landscape(const SupportTable& table, const Candidate& candidate,
+Landscape body_landscape(const StandingHull& hull, const Candidate& candidate,
                          const std::vector<TippingWay>& ways) {
     const double weight_N = candidate.body.mass_kg * gravity;
     Landscape out;
-    if (const auto hull = standing_hull(table.rows(), candidate))
-        out = of_hull(hull->hull(), weight_N, table.rows().resolution_m);
+    if (hull.ways) out = of_hull(hull.ways->hull(), weight_N, hull.resolution_m);
     const double height = candidate.body.center[2] - candidate.support_height_m;
     add_pose_as_scanned(is_held(candidate) && height <= 0, out);
     take_ways(ways, height, weight_N, out);

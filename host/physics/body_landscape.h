@@ -3,17 +3,17 @@
 
 #include <vector>
 
-#include "physics/landscape.h"
+#include "physics/standing_hull.h"
 
 // The pose landscape of a candidate, as its picture shows it.
 namespace topple::physics {
 
-// Of the hull on which it turns (standing_hull.h). The pose as scanned is one of its poses, however
+// The pose as scanned is one of its poses, however
 // shallow; others that are shallower than a voxel are parts of those that they lead to. Passes are
 // those between two poses; those out of the pose as scanned are no higher than its `ways`
 // (Stability::ways), which know how far its support reaches. Directions and corners are in the grid
-// frame. No corners where it has no hull about the centre of mass.
-Landscape body_landscape(const SupportTable& table, const Candidate& candidate,
+// frame. No corners where it has none.
+Landscape body_landscape(const StandingHull& hull, const Candidate& candidate,
                          const std::vector<TippingWay>& ways);
 
 }  // namespace topple::physics

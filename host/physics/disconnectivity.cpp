@@ -16,9 +16,9 @@ std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t v) {
 }
 
 // The full tree, a basin for every local minimum, in the order in which the minima appear: by
-// energy, equal ones by number. neighbours(v) is the span of those of v.
-template <typename Energy, typename Neighbours>
-MergeTree full_tree(std::span<const Energy> energy, const Neighbours& neighbours) {
+// energy, equal ones by number.
+MergeTree full_tree(std::span<const double> energy,
+                    std::span<const std::vector<std::uint32_t>> neighbours) {
     const auto n = static_cast<std::uint32_t>(energy.size());
     std::vector<std::uint32_t> order(n), parent(n), elder(n);  // elder: basin of a component's root
     std::iota(order.begin(), order.end(), 0U);
@@ -31,7 +31,7 @@ MergeTree full_tree(std::span<const Energy> energy, const Neighbours& neighbours
     tree.basin_of.assign(n, -1);
     for (const std::uint32_t v : order) {
         std::uint32_t deepest = absent;  // of the components around
-        for (const std::uint32_t w : neighbours(v)) {
+        for (const std::uint32_t w : neighbours[v]) {
             if (parent[w] == absent) continue;
             const std::uint32_t r = root(parent, w);
             if (deepest == absent || elder[r] < elder[deepest]) deepest = r;
@@ -42,7 +42,7 @@ MergeTree full_tree(std::span<const Energy> energy, const Neighbours& neighbours
             tree.basins.push_back({v, energy[v], std::numeric_limits<double>::infinity(), v, -1});
         } else {
             const std::uint32_t basin = elder[deepest];
-            for (const std::uint32_t w : neighbours(v)) {
+            for (const std::uint32_t w : neighbours[v]) {
                 if (parent[w] == absent) continue;
                 const std::uint32_t r = root(parent, w);
                 if (elder[r] != basin && r != v) {
@@ -82,19 +82,6 @@ MergeTree without_shallow(MergeTree tree, double plateau_tolerance) {
 
 }  // namespace
 
-MergeTree disconnectivity_graph(std::span<const float> energy, const SphereMesh& mesh,
-                                double plateau_tolerance) {
-    if (energy.size() != mesh.size()) {
-        throw Error(ErrorKind::usage, "disconnectivity_graph: " + std::to_string(energy.size()) +
-                                          " energies for " + std::to_string(mesh.size()) +
-                                          " directions");
-    }
-    const auto neighbours = [&](std::uint32_t v) {
-        return std::span(mesh.neighbour).subspan(std::size_t{v} * 6, 6);
-    };
-    return without_shallow(full_tree(energy, neighbours), plateau_tolerance);
-}
-
 MergeTree disconnectivity_graph(std::span<const double> energy,
                                 std::span<const std::vector<std::uint32_t>> neighbours,
                                 double plateau_tolerance) {
@@ -103,8 +90,7 @@ MergeTree disconnectivity_graph(std::span<const double> energy,
                                           " energies for " + std::to_string(neighbours.size()) +
                                           " nodes");
     }
-    const auto of = [&](std::uint32_t v) { return std::span(neighbours[v]); };
-    return without_shallow(full_tree(energy, of), plateau_tolerance);
+    return without_shallow(full_tree(energy, neighbours), plateau_tolerance);
 }
 
 std::int32_t MergeTree::last_join(std::uint32_t a, std::uint32_t b) const {
@@ -117,12 +103,6 @@ std::int32_t MergeTree::last_join(std::uint32_t a, std::uint32_t b) const {
         later = basins[later].parent;
     }
     return last;
-}
-
-double MergeTree::minimax(std::span<const float> energy, std::uint32_t a, std::uint32_t b) const {
-    const double level = std::max(energy[a], energy[b]);
-    const std::int32_t last = last_join(a, b);
-    return last < 0 ? level : std::max(level, basins[last].pass);
 }
 
 }  // namespace topple::physics

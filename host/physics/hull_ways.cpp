@@ -34,23 +34,30 @@ std::optional<Ends> HullWays::edge(std::uint32_t node) const {
 }
 
 std::vector<PosePass> HullWays::passes(double noise_m) const {
-    std::vector<MinimumBehind> behind;
+    std::vector<PosePass> behind;  // of each minimum, the pass to it from the start
     for (std::uint32_t f = 0; f < hull_.face.size(); ++f) {
         if (!hull_.face[f].minimum) continue;
+        PosePass pass{start_height_m_, start_, hull_.face[f].height * hull_.radius,
+                      opposite(hull_.face[f].normal)};
         const std::int32_t last = tree_.last_join(rest_, f);
-        MinimumBehind minimum{start_height_m_, hull_.face[f].height * hull_.radius, start_,
-                              opposite(hull_.face[f].normal)};
         if (last >= 0) {
             const MergeTree::Basin& basin = tree_.basins[last];
             if (basin.pass * hull_.radius > start_height_m_) {
-                minimum.level_m = basin.pass * hull_.radius;
-                minimum.pass = direction(basin.saddle);
-                minimum.edge = edge(basin.saddle);
+                pass.height_m = basin.pass * hull_.radius;
+                pass.direction = direction(basin.saddle);
+                pass.edge = edge(basin.saddle);
             }
         }
-        if (minimum.level_m - minimum.height_m > noise_m) behind.push_back(minimum);
+        if (pass.height_m - pass.deepest_m > noise_m) behind.push_back(pass);
     }
-    return passes_to(std::move(behind));
+    std::ranges::stable_sort(behind, {}, &PosePass::height_m);
+    std::vector<PosePass> out;
+    for (const PosePass& pass : behind) {
+        if (!out.empty() && pass.deepest_m >= out.back().deepest_m) continue;
+        if (!out.empty() && pass.height_m == out.back().height_m) out.pop_back();
+        out.push_back(pass);
+    }
+    return out;
 }
 
 double HullWays::height(const Vec3& up) const {

@@ -2,14 +2,25 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "physics/hull_polytope.h"
-#include "physics/pose_passes.h"
+#include "physics/landscape.h"
 
 // The exact landscape of a hull as seen from one pose. Heights are U / (M g), metres.
 namespace topple::physics {
+
+// One pass out of the start's basin, and the deepest minimum that it opens beyond those that lower
+// passes open (paper, Defs. 1 and 2).
+struct PosePass {
+    double height_m = 0;         // at the pass
+    Vec3 direction{};            // up in the body's frame at the pass
+    double deepest_m = 0;        // lowest height behind this pass or lower ones
+    Vec3 deepest{};              // and its direction
+    std::optional<Ends> edge{};  // over which it balances, relative to the centre of mass
+};
 
 class HullWays {
   public:
@@ -24,7 +35,8 @@ class HullWays {
     double rest_height() const { return hull_.face[rest_].height * hull_.radius; }
     void settle();
 
-    // The passes behind which a descent of more than noise_m lies, by rising height.
+    // The passes behind which a descent of more than noise_m lies, by rising height: the lowest,
+    // and those that open something deeper than lower ones do.
     std::vector<PosePass> passes(double noise_m) const;
     // Height at a direction, and the least highest point of all ways there from the start.
     double height(const Vec3& up) const;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <string>
 
+#include "physics/part_hulls.h"
 #include "physics/qhull.h"
-#include "physics/support_rows.h"
 #include "topple/error.h"
 
 namespace topple::physics {

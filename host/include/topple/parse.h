@@ -79,6 +79,10 @@ struct ParseOptions {
     // read from files and parsed in one piece. Where it fits the scan and the options, the parse
     // goes on from there, with the same result; else it is made anew. Empty: none.
     std::filesystem::path cache_file;
+    // The disturbance W under which an object is to stay (paper, Eq. 8), as a share of m g h, h the
+    // height of its centre of mass above its support. 0: it stands at all. What would fall at W is
+    // the likelier a part of what it touches: with more, more is one with the floor.
+    double stability_level = 0;
     // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
     // the objects depend on the machine.
     std::optional<double> grouping_time_s;

@@ -189,6 +189,7 @@ typedef struct topple_options {
     const char *corrections_file, *corrections_json;
     const char* cache_file; /* what does not depend on corrections (topple/parse.h); NULL: none */
     double tile_m;          /* not 0: any cloud file is parsed in blocks (topple/parse.h) */
+    double stability_level; /* W that objects are to stand, as a share of m g h; 0 */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 

@@ -154,7 +154,8 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
 
     const graph::GroupingOptions options;
     const auto biased = graph::biased_joints(p.joints, options.joint_bias);
-    const graph::GroupEnergy energy(p.contacts, p.bodies, biased, p.shell, options.standing_weight);
+    graph::GroupEnergy energy(device, p.contacts, p.bodies, biased, p.shell,
+                              options.standing_weight);
     const EnergyOf energy_of = energy.callbacks().of;
     std::vector<graph::Edge> edges;
     for (const graph::Joint& joint : p.joints) edges.push_back({joint.a, joint.b});
@@ -163,8 +164,8 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
     out.greedy = judged(room, greedy.label);
     out.greedy_energy = greedy.energy;
 
-    const graph::Grouping sampled = graph::group_primitives(p.contacts, p.bodies, p.joints, p.shell,
-                                                            options, device.threads().threads());
+    const graph::Grouping sampled =
+        graph::group_primitives(device, p.contacts, p.bodies, p.joints, p.shell, options);
     out.sampled = judged(room, sampled.group);
     out.sampled_energy = energy_of_all(energy_of, sampled.group);
     return out;

@@ -309,7 +309,7 @@ def _components(accelerogram):
 @_named
 def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, motion_unit=None,
-          motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
+          motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, stability_level=0.0, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
           name=None, viewpoint=None, colours=None, frames=None, camera_to_world=None, intrinsics=None, colour_intrinsics=None,
           tile_m=0.0, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
@@ -356,7 +356,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
              'density_kg_m3': density_kg_m3, 'friction': friction, 'contents_kg_m3': contents_kg_m3, 'walks': walks,
              'wind_m_s': wind_m_s, 'wind_from_deg': wind_from_deg, 'pga_m_s2': pga_m_s2,
-             'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'grouping_time_s': grouping_time_s, 'tile_m': tile_m}
+             'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'stability_level': stability_level, 'grouping_time_s': grouping_time_s, 'tile_m': tile_m}
     if disturbances is not None:
         given['disturbances'] = disturbances
     for option, value in given.items():

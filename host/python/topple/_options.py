@@ -64,7 +64,7 @@ def _names(value):
 
 
 _KINDS = {
-    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'tile_m',
+    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'stability_level', 'tile_m',
                           'force_N', 'impulse_Ns', 'slack_m', 'within_m')),
     'a number, or None': (_number, ('contents_kg_m3', 'wind_from_deg', 'pga_m_s2', 'grouping_time_s', 'motion_unit', 'motion_rate')),
     'a whole number from 0': (_whole(64), ('seed', 'max_memory_bytes')),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "graph/stable_objects.h"
 
+#include "graph/group_stances.h"
 #include "host/graph/floor_scene.h"
 #include "kernels/device_harness.h"
+#include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {
@@ -31,10 +33,10 @@ class Objects : public test::EachBackend {
         return shell;
     }
     Grouping grouped(FloorScene& scene, const std::vector<Joint>& joints,
-                     const GroupingOptions& options = weighing(1), unsigned threads = 1) {
+                     const GroupingOptions& options = weighing(1)) {
         const ContactGraph contacts = scene.contacts(*device);
-        return group_primitives(contacts, scene.bodies(*device), joints, shell_of(scene), options,
-                                threads);
+        return group_primitives(*device, contacts, scene.bodies(*device), joints, shell_of(scene),
+                                options);
     }
 };
 TOPPLE_ON_EACH_BACKEND(Objects);
@@ -109,7 +111,7 @@ TEST_P(Objects, WhatIsBuiltInGoesWithTheRoom) {
     const ShellOdds shell{{6, 2, -4}, {true, false, false}};
     const std::vector<Joint> joints{{0, 1, 0.5}, {0, 2, -4}, {1, 2, -2}};
     const Grouping out =
-        group_primitives(contacts, scene.bodies(*device), joints, shell, weighing(1), 1);
+        group_primitives(*device, contacts, scene.bodies(*device), joints, shell, weighing(1));
     EXPECT_THAT(out.group, ElementsAre(-1, -1, 0));
 }
 
@@ -123,8 +125,18 @@ TEST_P(Objects, WhatLeansOnTheWallStands) {
         });
         scene.add(box({-0.9, -0.06, 0}, {0.9, wall ? -0.02 : -0.04, 1.1}));
         const ContactGraph contacts = scene.contacts(*device);
-        const auto c = candidate_of(contacts, scene.bodies(*device), {true, false, wall}, {1});
-        const double cost = standing_cost(c, contacts.voxel_m);
+        const auto bodies = scene.bodies(*device);
+        const std::vector<bool> shell{true, false, wall};
+        const GroupQuery board{{1}, false};
+        const Stance stance =
+            GroupStances(*device, contacts, bodies, shell).of(std::span(&board, 1))[0];
+        const auto candidate = candidate_of(contacts, bodies, shell, {1});
+        EXPECT_NEAR(stance.margin_m,
+                    physics::footing(candidate.support_polygon, candidate.body.center[0],
+                                     candidate.body.center[1])
+                        .margin_m,
+                    1.0 / 40);
+        const double cost = standing_cost(stance, contacts.voxel_m);
         if (wall)
             EXPECT_LT(cost, 0.1);
         else
@@ -156,28 +168,68 @@ TEST_P(Objects, PairsHaveTheProbabilitiesOfTheirJoints) {
 
 // -ln of the share of a normal distribution: the margin over the noise.
 TEST(StandingCost, FollowsTheMarginOfTheCentre) {
-    physics::Candidate c;
-    c.body = test::body(0.001, {0, 0, 0.5});
-    c.support_polygon = {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}};
-    const double noise_m = 0.01;
-    EXPECT_NEAR(standing_cost(c, noise_m), 0, 1e-9) << "ten standard errors inside";
-    c.body.center[0] = 0.1;
-    EXPECT_NEAR(standing_cost(c, noise_m), std::log(2), 1e-9) << "on the border";
-    c.body.center[0] = 0.09;
-    EXPECT_NEAR(standing_cost(c, noise_m), -std::log(0.8413447460685429), 1e-9);
-    c.body.center[0] = 0.11;
-    EXPECT_NEAR(standing_cost(c, noise_m), -std::log(1 - 0.8413447460685429), 1e-9);
-    c.body.center[0] = 0.2;
-    EXPECT_NEAR(standing_cost(c, noise_m), -std::log(0.05), 1e-12) << "outside";
-    c.support_polygon.clear();
-    EXPECT_NEAR(standing_cost(c, noise_m), -std::log(0.05), 1e-12) << "on nothing";
-    c.body.mass_kg = 0;
-    EXPECT_EQ(standing_cost(c, noise_m), 0) << "nothing there to fall";
-    // How high it stands plays no part.
-    c = {};
-    c.body = test::body(0.001, {0.09, 0, 50});
-    c.support_polygon = {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}};
-    EXPECT_NEAR(standing_cost(c, noise_m), -std::log(0.8413447460685429), 1e-9);
+    constexpr double noise_m = 0.01, half = 0.6931471805599453, one_sigma = 0.8413447460685429;
+    const auto cost = [&](double margin_m, double height_m, double level = 0) {
+        return standing_cost({1, height_m, margin_m}, noise_m, level);
+    };
+    EXPECT_NEAR(cost(0.1, 0.5), 0, 1e-9) << "ten standard errors inside";
+    EXPECT_NEAR(cost(0, 0.5), half, 1e-9) << "on the border";
+    EXPECT_NEAR(cost(0.01, 0.5), -std::log(one_sigma), 1e-9);
+    EXPECT_NEAR(cost(-0.01, 0.5), -std::log(1 - one_sigma), 1e-9);
+    EXPECT_NEAR(cost(-0.1, 0.5), -std::log(0.05), 1e-12) << "outside";
+    EXPECT_NEAR(standing_cost({1, 0.5}, noise_m), -std::log(0.05), 1e-12) << "on nothing";
+    EXPECT_EQ(standing_cost({}, noise_m), 0) << "nothing there to fall";
+    EXPECT_NEAR(cost(0.01, 50), -std::log(one_sigma), 1e-9) << "how high plays no part at W = 0";
+    // At W just what it takes to tip it over its border: even.
+    const double level = std::hypot(0.5, 0.1) / 0.5 - 1;
+    EXPECT_NEAR(cost(0.1, 0.5, level), half, 1e-9);
+    EXPECT_LT(cost(0.1, 0.1, level), cost(0.1, 0.5, level)) << "what is lower stays";
+}
+
+// Fig. 7c: with a larger disturbance the chair, then the table is fixed to the floor.
+TEST_P(Objects, MoreIsFixedToTheFloorAtALargerDisturbance) {
+    FloorScene scene;
+    scene.add(box({-0.6, -0.4, 0}, {0.6, 0.4, 0.7}));    // the table
+    scene.add(box({0.9, -0.12, 0}, {1.14, 0.12, 0.8}));  // the chair
+    ShellOdds shell = shell_of(scene);
+    shell.log_odds = {6, 0, 0};
+    std::vector<std::vector<std::int32_t>> groups;
+    for (const double level : {0.0, 0.1, 1.0}) {
+        GroupingOptions options = weighing(1);
+        options.stability_level = level;
+        groups.push_back(group_primitives(*device, scene.contacts(*device), scene.bodies(*device),
+                                          std::vector<Joint>{{0, 1, -1}, {0, 2, -1}}, shell,
+                                          options)
+                             .group);
+    }
+    EXPECT_THAT(groups[0], ElementsAre(-1, 0, 1));
+    EXPECT_THAT(groups[1], ElementsAre(-1, 0, -1));
+    EXPECT_THAT(groups[2], ElementsAre(-1, -1, -1));
+}
+
+// Support functions in 64 directions against polygons.
+TEST_P(Objects, MarginsOfGroupsAreThoseOfTheirPolygons) {
+    LaidTable table;
+    const ContactGraph contacts = table.contacts(*device);
+    const auto bodies = table.bodies(*device);
+    const std::vector<bool> shell{true, false, false, false, false, false, false};
+    GroupStances stances(*device, contacts, bodies, shell);
+    std::vector<GroupQuery> groups;
+    for (unsigned bits = 1; bits < 64; ++bits) {
+        groups.emplace_back();
+        for (std::int32_t n = 0; n < 6; ++n)
+            if (bits >> n & 1U) groups.back().nodes.push_back(n + 1);
+    }
+    const std::vector<Stance> found = stances.of(groups);
+    for (std::size_t n = 0; n < groups.size(); ++n) {
+        const auto c = candidate_of(contacts, bodies, shell, groups[n].nodes);
+        EXPECT_NEAR(found[n].mass_kg, c.body.mass_kg, 1e-9);
+        EXPECT_NEAR(found[n].height_m, c.body.center[2] - c.support_height_m, 1e-9);
+        const double margin =
+            physics::footing(c.support_polygon, c.body.center[0], c.body.center[1]).margin_m;
+        EXPECT_GE(found[n].margin_m, margin - 1e-5);
+        EXPECT_LE(found[n].margin_m, margin + 0.001 * std::abs(margin) + 1.0 / 40);
+    }
 }
 
 }  // namespace

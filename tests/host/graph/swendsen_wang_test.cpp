@@ -203,7 +203,7 @@ TEST(SwendsenWang, StartsFromTheGroupsThatAreGiven) {
     const auto edges = complete_graph(6);
     SwendsenWangOptions options;
     options.anneal_steps = options.sample_steps = 0;
-    options.start = {7, 7, -3, 9, 9, -3};  // any numbers
+    options.starts = {{7, 7, -3, 9, 9, -3}};  // any numbers
     const std::vector<std::int32_t> three{0, 0, 1, 2, 2, 1};
     const std::vector<bool> none(6);
     const Partition free = swendsen_wang_cuts(6, edges, none, {arbitrary, {}}, options);
@@ -216,7 +216,7 @@ TEST(SwendsenWang, StartsFromTheGroupsThatAreGiven) {
     EXPECT_EQ(held.label, (std::vector<std::int32_t>{0, 0, 1, -1, -1, 1}));
     EXPECT_NEAR(held.energy, partition_energy(three, pinned), 1e-12);
     // Without a start each is on its own.
-    options.start.clear();
+    options.starts.clear();
     EXPECT_EQ(swendsen_wang_cuts(6, edges, pinned, {arbitrary, {}}, options).label,
               (std::vector<std::int32_t>{0, 1, 2, 3, -1, 4}));
 }
@@ -246,19 +246,22 @@ TEST(SwendsenWang, ThreadsChangeNothing) {
     const Partition one =
         swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
     for (const unsigned threads : {2u, 3u, 8u}) {
-        options.threads = threads;
+        ThreadPool pool(threads);
+        options.threads = &pool;
         const Partition many =
             swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
         EXPECT_EQ(one.label, many.label);
         EXPECT_EQ(one.joined, many.joined);
         EXPECT_EQ(one.best_energy_curve, many.best_energy_curve);
+        EXPECT_EQ(one.energies_evaluated, many.energies_evaluated);
     }
 }
 
 TEST(SwendsenWang, WhatTheEnergiesThrowReachesTheCaller) {
     const auto edges = complete_graph(12);
     SwendsenWangOptions options;
-    options.threads = 4;
+    ThreadPool pool(4);
+    options.threads = &pool;
     std::atomic<int> calls = 0;
     const auto fails = [&](std::span<const GroupQuery> groups, std::span<double> energies) {
         if (++calls == 20) throw std::runtime_error("device lost");
@@ -272,7 +275,8 @@ TEST(SwendsenWang, WhatTheEnergiesThrowReachesTheCaller) {
 TEST(SwendsenWang, StopsWhenCancelledWithTheBestSoFar) {
     const auto edges = complete_graph(12);
     SwendsenWangOptions options;
-    options.threads = 2;
+    ThreadPool pool(2);
+    options.threads = &pool;
     options.anneal_steps = 1000000000;
     int polls = 0;
     options.cancelled = [&] { return ++polls > 100; };

@@ -2,9 +2,10 @@
 #include "host/physics/solids.h"
 #include "kernels/device_compare.h"
 #include "kernels/device_harness.h"
+#include "oracle/geodesic_sphere.h"
 #include "physics/merge_close_points.h"
+#include "physics/part_hulls.h"
 #include "physics/rectangle.h"
-#include "physics/support_rows.h"
 
 namespace topple::physics {
 namespace {
@@ -58,45 +59,6 @@ TEST_P(Bodies, MassesMatchPlainSums) {
         }
     }
     EXPECT_TRUE(mass_properties(*device, SolidCells{}, 0, {}).empty());
-}
-
-TEST_P(Bodies, EveryBackendRatesAlike) {
-    // Whole evaluations, bit for bit.
-    const SolidCells cells = random_cells(5, 12, 4);
-    const std::vector<double> density(4, 700.0);
-    const auto run = [&](device::Device& on) {
-        const std::vector<MassProperties> bodies = mass_properties(on, cells, 4, density);
-        const SupportTable table(on, cells, 4, geodesic_sphere(16));
-        std::vector<Candidate> candidates;
-        for (std::int32_t p = 0; p < 4; ++p) {
-            for (std::int32_t q = p; q < 4; ++q) {
-                Candidate c;
-                c.primitives = p == q ? std::vector{p} : std::vector{p, q};
-                std::vector<MassProperties> parts;
-                for (const std::int32_t r : c.primitives) parts.push_back(bodies[r]);
-                c.body = combine(parts);
-                if ((p + q) % 3)
-                    c.support_polygon = {{0.02, 0.02}, {0.2, 0.02}, {0.2, 0.2}, {0.02, 0.2}};
-                candidates.push_back(c);
-            }
-        }
-        return evaluate(on, table, candidates);
-    };
-    const std::vector<Stability> here = run(*device);
-    const auto native = device::open_native(1);
-    const std::vector<Stability> there = run(*native);
-    ASSERT_EQ(here.size(), there.size());
-    for (std::size_t n = 0; n < here.size(); ++n) {
-        EXPECT_EQ(here[n].barrier_J, there[n].barrier_J);
-        EXPECT_EQ(here[n].release_J, there[n].release_J);
-        EXPECT_EQ(here[n].margin_m, there[n].margin_m);
-        EXPECT_EQ(here[n].easiest.direction, there[n].easiest.direction);
-        ASSERT_EQ(here[n].curve.size(), there[n].curve.size());
-        for (std::size_t s = 0; s < here[n].curve.size(); ++s) {
-            EXPECT_EQ(here[n].curve[s].W_J, there[n].curve[s].W_J);
-            EXPECT_EQ(here[n].curve[s].S_J, there[n].curve[s].S_J);
-        }
-    }
 }
 
 TEST_P(Bodies, TouchingPairsMatchASearch) {
@@ -175,7 +137,7 @@ TEST(VoxelHulls, SupportEveryCorner) {
             cells = flat;
         }
         const auto hulls = voxel_hulls(cells, 3);
-        const SphereMesh mesh = geodesic_sphere(5);
+        const test::SphereMesh mesh = test::geodesic_sphere(5);
         for (std::int32_t label = 0; label < 3; ++label) {
             for (std::size_t d = 0; d < mesh.size(); ++d) {
                 const auto along = [&](std::int32_t i, std::int32_t j, std::int32_t k) {

@@ -3,8 +3,6 @@
 #include "device/devices.h"
 #include "host/physics/hulls.h"
 #include "physics/hull_landscape.h"
-#include "physics/hull_polytope.h"
-#include "physics/pose_passes.h"
 #include "testing.h"
 
 namespace topple::physics {
@@ -18,15 +16,10 @@ class ClosedForms : public ::testing::Test {
   protected:
     std::unique_ptr<device::Device> device = device::open_native(2);
 
-    // Barrier of an exact vertex set. With `held` false it stands on the hull's landscape alone:
-    // the polygon given is far wider than the body, so its edges are no way out.
+    // Of an exact vertex set.
     Stability exact(const std::vector<Vec3>& vertices, const MassProperties& mass,
-                    std::vector<std::array<double, 2>> polygon, unsigned frequency,
-                    double height = 0, Passes passes = Passes::sampled) {
-        const std::vector<std::vector<Vec3>> sets{vertices};
-        const SupportTable table(*device, sets, 0, geodesic_sphere(frequency));
-        const Candidate candidate{{0}, mass, std::move(polygon), height};
-        return evaluate(*device, table, std::span(&candidate, 1), passes)[0];
+                    std::vector<std::array<double, 2>> polygon) {
+        return test::stability({vertices}, {{0}, mass, std::move(polygon)});
     }
     void expect_share(double value, double truth, double share) {
         EXPECT_NEAR(value, truth, share * truth) << "off by " << (value / truth - 1) * 100 << " %";
@@ -37,10 +30,8 @@ class ClosedForms : public ::testing::Test {
         for (const auto& [share, most] : worst_)
             std::printf("worst error %.2g of at most %g\n", most, share);
     }
-    Stability voxels(const SolidCells& cells, Passes passes) {
-        const SupportTable table(*device, cells, 1, geodesic_sphere(16));
-        const Candidate candidate = test::standing(*device, cells);
-        return evaluate(*device, table, std::span(&candidate, 1), passes)[0];
+    Stability voxels(const SolidCells& cells) {
+        return test::stability(cells, test::standing(*device, cells));
     }
 
   private:
@@ -63,24 +54,19 @@ std::vector<Vec3> box_vertices(double a, double b, double c) {
 constexpr double box_short = 3.96604, box_long = 8.55630, box_corner = 11.98995;
 
 TEST_F(ClosedForms, BoxOnTheLandscapeAlone) {
-    for (const unsigned frequency : {8U, 16U, 32U, 48U}) {
-        SCOPED_TRACE(frequency);
-        const Stability s =
-            exact(box_vertices(0.3, 0.2, 0.5), body(0.03, {0, 0, 0.25}), everywhere, frequency);
-        expect_share(s.barrier_J, box_short, 0.01);
-        // Across its narrow side, which is y.
-        EXPECT_LT(std::abs(s.easiest.direction[0]), 0.1);
-        EXPECT_GT(std::abs(s.easiest.direction[1]), 0.99);
-        // From the pass to lying on the 0.5 x 0.3 face, centre 0.1 m up.
-        const double weight = 21 * gravity;
-        expect_share(s.release_J, box_short + weight * (0.25 - 0.1), 0.01);
-    }
+    const Stability s = exact(box_vertices(0.3, 0.2, 0.5), body(0.03, {0, 0, 0.25}), everywhere);
+    expect_share(s.barrier_J, box_short, 1e-5);
+    // Across its narrow side, which is y.
+    EXPECT_NEAR(std::abs(s.easiest.direction[1]), 1, 1e-9);
+    // From the pass to lying on the 0.5 x 0.3 face, centre 0.1 m up.
+    const double weight = 21 * gravity;
+    expect_share(s.release_J, box_short + weight * (0.25 - 0.1), 1e-5);
 }
 
 // Rings whose facets touch the round body: tipping over a facet is tipping over its rim.
 TEST_F(ClosedForms, OfExactHulls) {
     const auto barrier = [&](const std::vector<Vec3>& vertices, const MassProperties& mass) {
-        return exact(vertices, mass, everywhere, 16, 0, Passes::exact).barrier_J;
+        return exact(vertices, mass, everywhere).barrier_J;
     };
     const auto over = [](const MassProperties& mass, double rim) {
         const double h = mass.center[2];
@@ -115,32 +101,22 @@ TEST_F(ClosedForms, OfExactHulls) {
 TEST_F(ClosedForms, BoxTippingTheLongWay) {
     // From the pose with the 0.5 x 0.2 face down the long way is over the 0.2 edge.
     const Stability s = exact(box_vertices(0.3, 0.2, 0.5), body(0.03, {0, 0, 0.25}),
-                              {{-0.15, -9}, {0.15, -9}, {0.15, 9}, {-0.15, 9}}, 16);
+                              {{-0.15, -9}, {0.15, -9}, {0.15, 9}, {-0.15, 9}});
     expect_share(s.barrier_J, box_short, 0.01);  // the hull's own pass across y is still the lowest
     // A cuboid cannot pass 0.2 wide if y is made long: then x is the weak way.
-    const Stability wide =
-        exact(box_vertices(0.3, 2.0, 0.5), body(0.3, {0, 0, 0.25}), everywhere, 48);
+    const Stability wide = exact(box_vertices(0.3, 2.0, 0.5), body(0.3, {0, 0, 0.25}), everywhere);
     expect_share(wide.barrier_J, 10 * box_long, 0.01);
     EXPECT_GT(std::abs(wide.easiest.direction[0]), 0.99);
 }
 
 TEST_F(ClosedForms, BoxCornerIsTheTopOfTheLandscape) {
-    const std::vector<std::vector<Vec3>> sets{box_vertices(0.3, 0.2, 0.5)};
-    // Sampled upward maximum: the height of the centre over a corner, less the start's.
-    const SphereMesh mesh = geodesic_sphere(48);
-    double highest = 0;
-    for (std::size_t v = 0; v < mesh.size(); ++v) {
-        double low = 1e9;
-        for (const Vec3& p : sets[0])
-            low = std::min(low, p[0] * mesh.x[v] + p[1] * mesh.y[v] + (p[2] - 0.25) * mesh.z[v]);
-        highest = std::max(highest, -low);
-    }
-    expect_share(21 * gravity * (highest - 0.25), box_corner, 0.01);
+    const HullLandscape l = hull_landscape(box_vertices(0.3, 0.2, 0.5), {0, 0, 0.25});
+    expect_share(21 * gravity * (l.highest_m - 0.25), box_corner, 1e-5);
 }
 
 TEST_F(ClosedForms, BoxHeldOnItsBase) {
     const Stability s = exact(box_vertices(0.3, 0.2, 0.5), body(0.03, {0, 0, 0.25}),
-                              {{-0.15, -0.1}, {0.15, -0.1}, {0.15, 0.1}, {-0.15, 0.1}}, 16);
+                              {{-0.15, -0.1}, {0.15, -0.1}, {0.15, 0.1}, {-0.15, 0.1}});
     expect_share(s.barrier_J, box_short, 1e-5);
     EXPECT_NEAR(s.margin_m, 0.1, 1e-9);
     ASSERT_FALSE(s.curve.empty());
@@ -158,59 +134,30 @@ TEST_F(ClosedForms, CylinderOverItsRim) {
         v.push_back({p[0], p[1], 0.12});
     }
     const double volume = pi * 0.04 * 0.04 * 0.12;
-    expect_share(exact(v, body(volume, {0, 0, 0.06}), everywhere, 48).barrier_J, 0.050148, 0.01);
-    expect_share(exact(v, body(volume, {0, 0, 0.06}), ring(0.04, 256), 16).barrier_J, 0.050148,
-                 0.01);
+    expect_share(exact(v, body(volume, {0, 0, 0.06}), everywhere).barrier_J, 0.050148, 0.01);
+    expect_share(exact(v, body(volume, {0, 0, 0.06}), ring(0.04, 256)).barrier_J, 0.050148, 0.01);
 }
 
 TEST_F(ClosedForms, ConeOnItsBase) {
     std::vector<Vec3> v{{0, 0, 0.3}};
     for (const auto& p : ring(0.1, 256)) v.push_back({p[0], p[1], 0});
     const MassProperties mass = body(pi * 0.01 * 0.3 / 3, {0, 0, 0.075});
-    const Stability s = exact(v, mass, everywhere, 48);
+    const Stability s = exact(v, mass, everywhere);
     expect_share(s.barrier_J, 1.078297, 0.01);
     // Lying, its centre is at 0.071151 m: 4 mm deeper than upright.
     expect_share(s.release_J, s.barrier_J + mass.mass_kg * gravity * (0.075 - 0.071151), 0.01);
 }
 
-std::vector<Vec3> dome(double r, double sign) {
-    std::vector<Vec3> v;
+TEST_F(ClosedForms, Hemisphere) {
+    const double r = 0.1;
+    std::vector<Vec3> v{{0, 0, r}};
     for (unsigned band = 0; band < 48; ++band) {
         const double angle = pi / 2 * band / 48;
         for (const auto& p : ring(r * std::cos(angle), 96))
-            v.push_back({p[0], p[1], sign * r * std::sin(angle)});
+            v.push_back({p[0], p[1], r * std::sin(angle)});
     }
-    v.push_back({0, 0, sign * r});
-    return v;
-}
-
-TEST_F(ClosedForms, Hemisphere) {
-    const double r = 0.1, volume = 2.0 / 3 * pi * r * r * r;
-    const Stability flat = exact(dome(r, 1), body(volume, {0, 0, 3 * r / 8}), everywhere, 48);
-    expect_share(flat.barrier_J, 0.996348, 0.01);
-    const Stability round =
-        exact(dome(r, -1), body(volume, {0, 0, -3 * r / 8}), everywhere, 48, -r);
-    expect_share(round.barrier_J, 0.636915, 0.01);
-}
-
-TEST_F(ClosedForms, BallAndLyingCylinderAreOneBasin) {
-    std::vector<Vec3> ball = dome(0.1, 1);
-    for (const Vec3& v : dome(0.1, -1)) ball.push_back(v);
-    const double weight = 700 * 4.0 / 3 * pi * 0.001 * gravity;
-    const Stability s = exact(ball, body(4.0 / 3 * pi * 0.001, {0, 0, 0}), everywhere, 32, -0.1);
-    EXPECT_LT(s.barrier_J, 0.01 * weight * 0.1);
-    EXPECT_EQ(s.release_J, 0);
-
-    // Lying along x.
-    std::vector<Vec3> roll;
-    for (const auto& p : ring(0.04, 128)) {
-        roll.push_back({-0.06, p[0], p[1]});
-        roll.push_back({0.06, p[0], p[1]});
-    }
-    const double volume = pi * 0.04 * 0.04 * 0.12;
-    const Stability lying = exact(roll, body(volume, {0, 0, 0}), everywhere, 48, -0.04);
-    EXPECT_LT(lying.barrier_J, 0.02 * 700 * volume * gravity * 0.04);
-    EXPECT_EQ(lying.release_J, 0);
+    const MassProperties mass = body(2.0 / 3 * pi * r * r * r, {0, 0, 3 * r / 8});
+    expect_share(exact(v, mass, everywhere).barrier_J, 0.996348, 0.01);
 }
 
 TEST_F(ClosedForms, VoxelisedSolids) {
@@ -228,19 +175,16 @@ TEST_F(ClosedForms, VoxelisedSolids) {
                      hat = test::voxelise({{0, cone}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.3}, voxel),
                      dome = test::voxelise({{0, ball}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, voxel),
                      bowl = test::voxelise({{0, ball}}, {-0.1, -0.1, -0.1}, {0.1, 0.1, 0}, voxel);
-    for (const Passes passes : {Passes::sampled, Passes::exact}) {
-        SCOPED_TRACE(passes == Passes::exact ? "exact" : "sampled");
-        expect_share(voxels(box, passes).barrier_J, box_short, 0.001);
-        expect_share(voxels(can, passes).barrier_J, 0.050148, 0.05);
-        expect_share(voxels(hat, passes).barrier_J, 1.078297, 0.05);
-        expect_share(voxels(dome, passes).barrier_J, 0.996348, 0.05);
+    {
+        expect_share(voxels(box).barrier_J, box_short, 0.001);
+        expect_share(voxels(can).barrier_J, 0.050148, 0.05);
+        expect_share(voxels(hat).barrier_J, 1.078297, 0.05);
+        expect_share(voxels(dome).barrier_J, 0.996348, 0.05);
     }
     // On a dome of voxels it stands on the few of the lowest layer: only the hull tells.
-    SupportTable table(*device, bowl, 1, geodesic_sphere(16));
     Candidate rocking = test::standing(*device, bowl);
     rocking.support_polygon = everywhere;
-    expect_share(evaluate(*device, table, std::span(&rocking, 1), Passes::exact)[0].barrier_J,
-                 0.636915, 0.05);
+    expect_share(test::stability(bowl, rocking).barrier_J, 0.636915, 0.05);
 }
 
 TEST_F(ClosedForms, VoxelisedRollersAreFree) {
@@ -254,10 +198,9 @@ TEST_F(ClosedForms, VoxelisedRollersAreFree) {
     const SolidCells round = test::voxelise({{0, ball}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.2}, voxel),
                      lying =
                          test::voxelise({{0, roll}}, {-0.06, -0.04, 0}, {0.06, 0.04, 0.08}, voxel);
-    for (const Passes passes : {Passes::sampled, Passes::exact}) {
-        SCOPED_TRACE(passes == Passes::exact ? "exact" : "sampled");
+    {
         for (const SolidCells& cells : {round, lying}) {
-            const Stability s = voxels(cells, passes);
+            const Stability s = voxels(cells);
             EXPECT_EQ(s.barrier_J, 0);
             EXPECT_EQ(s.release_J, 0);
         }
@@ -277,67 +220,21 @@ double radius_of(const Hull& hull) {
     return radius;
 }
 
-// Poses whose barrier is at least a share of the radius, and for how many the mesh's
-// disconnectivity graph has a basin: one from whose minimum the steepest way down leads there.
-struct Found {
-    std::size_t poses = 0, found = 0;
-};
-Found basins_on(const SphereMesh& mesh, const Hull& hull, const HullLandscape& exact,
-                double resolution, double share) {
-    std::vector<float> height(mesh.size());
-    for (std::size_t v = 0; v < mesh.size(); ++v) {
-        double highest = 0;
-        for (const Vec3& p : hull.points)
-            highest = std::max(highest, dot(minus(hull.center, p), direction_of(mesh, v)));
-        height[v] = static_cast<float>(highest);
-    }
-    const HullPolytope polytope = hull_polytope(hull.points, hull.center);
-    const MergeTree nodes = merge_tree(polytope, resolution / polytope.radius);
-    std::vector<bool> seen(exact.poses.size(), false);
-    for (const MergeTree::Basin& basin : disconnectivity_graph(height, mesh, 0).basins) {
-        const std::uint32_t face = descend(polytope, opposite(direction_of(mesh, basin.minimum)));
-        seen.at(static_cast<std::size_t>(nodes.basin_of[face])) = true;
-    }
-    Found count;
-    for (std::size_t n = 0; n < seen.size(); ++n) {
-        if (exact.poses[n].barrier_m < share * exact.highest_m) continue;
-        ++count.poses;
-        count.found += seen[n];
-    }
-    return count;
-}
-
-// Barriers of every pose of a hull, each put upright on a plane, by evaluate().
+// Barriers of every pose of a hull, each put upright on a plane.
 class Barriers : public ::testing::Test {
   protected:
-    std::unique_ptr<device::Device> device = device::open_native(2);
-    const SphereMesh mesh = geodesic_sphere(16);
-
-    std::vector<double> barriers(const Hull& hull, const HullLandscape& exact, double resolution,
-                                 Passes passes) {
-        std::vector<std::vector<Vec3>> sets;
-        std::vector<Candidate> candidates;
-        for (const HullPose& pose : exact.poses) {
-            const Vec3& z = pose.up;
-            const Vec3 x = unit(cross(z, std::abs(z[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})),
-                       y = cross(z, x);
-            std::vector<Vec3> points;
-            for (const Vec3& p : hull.points) {
-                const Vec3 v = minus(p, hull.center);
-                points.push_back({dot(v, x), dot(v, y), dot(v, z)});
-            }
-            // A polygon so wide that only the hull's own passes lead anywhere.
-            candidates.push_back({{static_cast<std::int32_t>(sets.size())},
-                                  test::body(1.0 / 700, {0, 0, 0}),
-                                  {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}},
-                                  -pose.height_m});
-            sets.push_back(std::move(points));
+    static double barrier_m(const Hull& hull, const HullPose& pose, double resolution_m) {
+        const Vec3& z = pose.up;
+        const Vec3 x = unit(cross(z, std::abs(z[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})),
+                   y = cross(z, x);
+        std::vector<Vec3> points;
+        for (const Vec3& p : hull.points) {
+            const Vec3 v = minus(p, hull.center);
+            points.push_back({dot(v, x), dot(v, y), dot(v, z)});
         }
-        const SupportTable table(*device, sets, resolution, mesh);
-        std::vector<double> result;
-        for (const Stability& s : evaluate(*device, table, candidates, passes))
-            result.push_back(s.barrier_J / gravity);
-        return result;
+        const Candidate candidate{
+            {0}, test::body(1.0 / 700, {0, 0, 0}), everywhere, -pose.height_m};
+        return test::stability({points}, candidate, resolution_m).barrier_J / gravity;
     }
 
     // Every pose of the hull that is deeper than 1e-4 of its radius.
@@ -345,36 +242,17 @@ class Barriers : public ::testing::Test {
         const double resolution = 1e-4 * radius_of(hull);
         const HullLandscape exact =
             hull_landscape(hull.points, hull.center, {.resolution_m = resolution});
-        const std::vector<double> by_hull = barriers(hull, exact, resolution, Passes::exact),
-                                  by_mesh = barriers(hull, exact, resolution, Passes::sampled);
-        for (std::size_t n = 0; n < exact.poses.size(); ++n) {
-            const double truth = exact.poses[n].barrier_m;
-            if (!std::isfinite(truth)) {
-                EXPECT_EQ(by_hull[n], 0);  // the only pose: nothing is behind any pass
+        for (const HullPose& pose : exact.poses) {
+            const double found = barrier_m(hull, pose, resolution);
+            if (!std::isfinite(pose.barrier_m)) {
+                EXPECT_EQ(found, 0);  // the only pose: nothing is behind any pass
                 continue;
             }
-            EXPECT_NEAR(by_hull[n], truth, 0.002 * truth) << "pose " << n;
+            EXPECT_NEAR(found, pose.barrier_m, 0.002 * pose.barrier_m);
             ++poses_;
-            if (truth < 0.1 * exact.highest_m) continue;
-            ++deep_;
-            deep_near_ += std::abs(by_mesh[n] / truth - 1) <= 0.02;
         }
-        const Found coarse = basins_on(mesh, hull, exact, resolution, 0.04);
-        const Found fine = basins_on(fine_, hull, exact, resolution, 0.01);
-        EXPECT_EQ(coarse.found, coarse.poses);
-        EXPECT_EQ(fine.found, fine.poses);
-        coarse_ += coarse.poses;
-        fine_found_ += fine.poses;
     }
-    void TearDown() override {
-        std::cout << poses_ << " poses with exact barriers; of " << deep_
-                  << " deeper than a tenth of the radius, the mesh has " << deep_near_
-                  << " within 2 %; basins on the mesh: all " << coarse_
-                  << " deeper than 4 % of the radius at frequency 16, all " << fine_found_
-                  << " deeper than 1 % at 48\n";
-    }
-    const SphereMesh fine_ = geodesic_sphere(48);
-    std::size_t poses_ = 0, deep_ = 0, deep_near_ = 0, coarse_ = 0, fine_found_ = 0;
+    std::size_t poses_ = 0;
 };
 
 TEST_F(Barriers, OfRandomHulls) {
@@ -388,7 +266,6 @@ TEST_F(Barriers, OfRandomHulls) {
         }
     }
     EXPECT_GT(poses_, 600U);
-    EXPECT_GE(deep_near_ * 4, deep_ * 3);
 }
 
 // Convex parts as an .obj file lists them, of one density.

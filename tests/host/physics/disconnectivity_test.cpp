@@ -8,8 +8,8 @@
 #include "host/physics/hulls.h"
 #include "kernels/device_compare.h"
 #include "oracle/flood_oracle.h"
-#include "oracle/steepest_descent_oracle.h"
-#include "physics/basins.h"
+#include "oracle/geodesic_sphere.h"
+#include "physics/assess.h"
 #include "physics/body_landscape.h"
 #include "physics/hull_landscape.h"
 #include "physics/sliding.h"
@@ -18,42 +18,24 @@
 namespace topple::physics {
 namespace {
 
-TEST(SphereMesh, IsAGeodesicSphere) {
-    for (const unsigned f : {1U, 2U, 3U, 16U, 33U}) {
-        SCOPED_TRACE(f);
-        const SphereMesh mesh = geodesic_sphere(f);
-        ASSERT_EQ(mesh.size(), 10U * f * f + 2);
-        EXPECT_EQ(mesh.x[0], 0);
-        EXPECT_EQ(mesh.y[0], 0);
-        EXPECT_EQ(mesh.z[0], 1);
-        std::size_t fives = 0;
-        double shortest = 9, longest = 0;
-        for (std::uint32_t v = 0; v < mesh.size(); ++v) {
-            EXPECT_NEAR(mesh.x[v] * mesh.x[v] + mesh.y[v] * mesh.y[v] + mesh.z[v] * mesh.z[v], 1,
-                        1e-6);
-            std::vector<std::uint32_t> around(mesh.neighbour.begin() + v * 6,
-                                              mesh.neighbour.begin() + v * 6 + 6);
-            if (around[5] == around[0]) {
-                ++fives;
-                around.pop_back();
-            }
-            for (const std::uint32_t w : around) {
-                EXPECT_NE(w, v);
-                const auto* back = &mesh.neighbour[w * 6];
-                EXPECT_NE(std::find(back, back + 6, v), back + 6) << v << " " << w;
-                const double length =
-                    std::hypot(mesh.x[v] - mesh.x[w], mesh.y[v] - mesh.y[w], mesh.z[v] - mesh.z[w]);
-                shortest = std::min(shortest, length);
-                longest = std::max(longest, length);
-            }
-            std::sort(around.begin(), around.end());
-            EXPECT_EQ(std::unique(around.begin(), around.end()), around.end());
-        }
-        EXPECT_EQ(fives, 12U);
-        EXPECT_LT(longest / shortest, 1.5);
-    }
-    EXPECT_THROW(geodesic_sphere(0), Error);
-    EXPECT_THROW(geodesic_sphere(5000), Error);
+using test::geodesic_sphere;
+using test::SphereMesh;
+
+MergeTree tree_of(const std::vector<float>& energy, const SphereMesh& mesh, double tolerance) {
+    std::vector<std::vector<std::uint32_t>> neighbours;
+    for (std::size_t v = 0; v < mesh.size(); ++v)
+        neighbours.emplace_back(mesh.neighbour.begin() + static_cast<std::ptrdiff_t>(6 * v),
+                                mesh.neighbour.begin() + static_cast<std::ptrdiff_t>(6 * v + 6));
+    return disconnectivity_graph(std::vector<double>(energy.begin(), energy.end()), neighbours,
+                                 tolerance);
+}
+
+// The least, over all ways from a to b, of the highest energy on the way.
+double minimax(const MergeTree& tree, const std::vector<float>& energy, std::uint32_t a,
+               std::uint32_t b) {
+    const double level = std::max(energy[a], energy[b]);
+    const std::int32_t last = tree.last_join(a, b);
+    return last < 0 ? level : std::max(level, tree.basins[last].pass);
 }
 
 // Whether b can be reached from a without rising above `level`: by plain search.
@@ -86,7 +68,7 @@ TEST(DisconnectivityGraph, EveryMinimumDiesAtItsLowestPass) {
         if (seed % 2) {
             for (float& e : energy) e = std::floor(e * 6) / 6;
         }
-        const MergeTree tree = disconnectivity_graph(energy, mesh, 0);
+        const MergeTree tree = tree_of(energy, mesh, 0);
         // By definition: a basin dies at the least energy that links its minimum to a deeper one
         // (or, where equal, to one of a lower id).
         ASSERT_FALSE(tree.basins.empty());
@@ -122,11 +104,11 @@ TEST(DisconnectivityGraph, GivesTheFloodsLevels) {
             if (seed % 2) {
                 for (float& e : energy) e = std::floor(e * 5) / 5;
             }
-            const MergeTree tree = disconnectivity_graph(energy, mesh, 0);
+            const MergeTree tree = tree_of(energy, mesh, 0);
             const auto start = static_cast<std::uint32_t>(random.word() % mesh.size());
             const std::vector<float> flood = oracle::flood(energy, mesh.neighbour, 6, start);
             for (std::uint32_t v = 0; v < mesh.size(); ++v) {
-                ASSERT_EQ(tree.minimax(energy, start, v), flood[v])
+                ASSERT_EQ(minimax(tree, energy, start, v), flood[v])
                     << "f " << f << " seed " << seed << " at " << v;
             }
         }
@@ -136,12 +118,12 @@ TEST(DisconnectivityGraph, GivesTheFloodsLevels) {
 TEST(DisconnectivityGraph, PlateausAreOneBasin) {
     const SphereMesh mesh = geodesic_sphere(8);
     const std::vector<float> flat(mesh.size(), 1.0F);
-    EXPECT_EQ(disconnectivity_graph(flat, mesh, 0).basins.size(), 1U);
+    EXPECT_EQ(tree_of(flat, mesh, 0).basins.size(), 1U);
     test::Random random(3);
     const std::vector<float> noise = random.floats(mesh.size(), 1.0F, 1.001F);
-    EXPECT_GT(disconnectivity_graph(noise, mesh, 0).basins.size(), 10U);
-    EXPECT_EQ(disconnectivity_graph(noise, mesh, 0.0011).basins.size(), 1U);
-    EXPECT_THROW(disconnectivity_graph({}, mesh, 0), Error);
+    EXPECT_GT(tree_of(noise, mesh, 0).basins.size(), 10U);
+    EXPECT_EQ(tree_of(noise, mesh, 0.0011).basins.size(), 1U);
+    EXPECT_THROW(disconnectivity_graph({}, std::vector<std::vector<std::uint32_t>>(1), 0), Error);
 }
 
 TEST(DisconnectivityGraph, ABoxHasSixBasins) {
@@ -151,7 +133,7 @@ TEST(DisconnectivityGraph, ABoxHasSixBasins) {
         height.push_back(0.15F * std::abs(mesh.x[v]) + 0.1F * std::abs(mesh.y[v]) +
                          0.25F * std::abs(mesh.z[v]));
     }
-    const MergeTree tree = disconnectivity_graph(height, mesh, 0.01);
+    const MergeTree tree = tree_of(height, mesh, 0.01);
     ASSERT_EQ(tree.basins.size(), 6U);
     // On each pair of faces: 0.1, 0.15 and 0.25 m up. The mesh overshoots where it misses a face.
     const double truth[6] = {0.1, 0.1, 0.15, 0.15, 0.25, 0.25};
@@ -184,7 +166,6 @@ double barrier_from_now(const Landscape& l) {
 // One hull for both: whatever holds it, the landscape's pose "now" is the one that was scanned, and
 // its barrier that of the object.
 TEST(BodyLandscape, NowIsThePoseAsScannedBehindItsBarrier) {
-    const auto device = device::open_native(1);
     const Vec3 center{0, 0, size[2] / 2};
     const Standing ways[] = {
         {"on all of its foot", rectangle(-0.15, 0.15, -0.1, 0.1), 0},
@@ -205,7 +186,6 @@ TEST(BodyLandscape, NowIsThePoseAsScannedBehindItsBarrier) {
         std::vector<std::vector<Vec3>> vertices{test::box_hull(size[0], size[1], size[2]).points};
         for (Vec3& v : vertices[0]) v[2] += center[2];
         vertices[0].insert(vertices[0].end(), way.more.begin(), way.more.end());
-        const SupportTable table(*device, vertices, 0.01, geodesic_sphere(8));
         Candidate box;
         box.primitives = {0};
         box.body.mass_kg = 20;
@@ -213,9 +193,9 @@ TEST(BodyLandscape, NowIsThePoseAsScannedBehindItsBarrier) {
         box.support_polygon = way.support;
         box.support_height_m = way.support_height_m;
         box.stood = way.stood;
-        const Stability tipping =
-            evaluate(*device, table, std::span(&box, 1), Passes::exact).front();
-        const Landscape l = body_landscape(table, box, tipping.ways);
+        const StandingHull hull = standing_hull({vertices, 0.01}, box);
+        const Stability tipping = assess(hull, box);
+        const Landscape l = body_landscape(hull, box, tipping.ways);
         const Landscape::Pose& now = l.poses.at(static_cast<std::size_t>(l.now));
         EXPECT_EQ(now.up, (Vec3{0, 0, 1}));
         EXPECT_EQ(now.energy_J, 0);
@@ -234,19 +214,26 @@ TEST(BodyLandscape, NowIsThePoseAsScannedBehindItsBarrier) {
     }
 }
 
-TEST(BodyLandscape, AFlatSheetHasThePoseAsScannedAlone) {
-    const auto device = device::open_native(1);
-    const SupportTable table(*device,
-                             std::vector<std::vector<Vec3>>{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-                             0.01, geodesic_sphere(8));
+TEST(BodyLandscape, AFlatSheetIsAsThickAsItsResolution) {
     Candidate sheet;
     sheet.primitives = {0};
     sheet.body.mass_kg = 1;
     sheet.body.center = {0.3, 0.3, 0};
-    const Landscape l = body_landscape(table, sheet, {});
+    const StandingHull hull = standing_hull({{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, 0.01}, sheet);
+    const Landscape l = body_landscape(hull, sheet, {});
+    ASSERT_EQ(l.poses.size(), 2U);
+    EXPECT_EQ(l.poses[l.now].up, (Vec3{0, 0, 1}));
+    double highest = 0;
+    for (const Vec3& v : l.hull_m) highest = std::max(highest, std::abs(v[2]));
+    EXPECT_NEAR(highest, 0.005, 1e-12);
+}
+
+TEST(BodyLandscape, WhatHasNoCornersHasThePoseAsScannedAlone) {
+    Candidate nothing;
+    nothing.primitives = {0};
+    const Landscape l = body_landscape(standing_hull({{{}}, 0.01}, nothing), nothing, {});
     EXPECT_TRUE(l.hull_m.empty());
     ASSERT_EQ(l.poses.size(), 1U);
-    EXPECT_EQ(l.now, 0);
     EXPECT_EQ(l.poses[0].up, (Vec3{0, 0, 1}));
 }
 
@@ -321,7 +308,7 @@ TEST(Persistence, RandomFieldsOnTheSphere) {
                 }
             }
             Complex complex = complex_of(energy, mesh);
-            const std::vector<Pair> pairs = pairs_of(disconnectivity_graph(energy, mesh, 0));
+            const std::vector<Pair> pairs = pairs_of(tree_of(energy, mesh, 0));
             ASSERT_EQ(pairs, persistence(complex));
             basins += pairs.size();
         }
@@ -387,55 +374,6 @@ TEST(Persistence, LandscapesOfHulls) {
             }
         }
     }
-}
-
-// Noise has as many basins as a mesh can; in steps it has plateaus, and saddles that are equal.
-void expect_levels_of_flood(const SphereMesh& mesh, const std::vector<float>& height,
-                            std::uint32_t start) {
-    std::vector<std::uint32_t> down = oracle::steepest_descent(height, mesh.neighbour, 6);
-    const Basins basins(height, mesh, down, start);
-    const std::vector<float> flood = oracle::flood(height, mesh.neighbour, 6, start);
-    for (std::uint32_t v = 0; v < mesh.size(); ++v) ASSERT_EQ(basins.level(v), flood[v]) << v;
-    for (std::size_t b = 0; b < basins.minima().size(); ++b)
-        ASSERT_EQ(std::max(basins.level_of_minimum(b), height[basins.minima()[b]]),
-                  flood[basins.minima()[b]]);
-}
-
-TEST(Basins, LevelsAreThoseOfAFlood) {
-    for (const unsigned f : {1U, 2U, 5U, 9U, 16U, 33U}) {
-        const SphereMesh mesh = geodesic_sphere(f);
-        for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-            SCOPED_TRACE(testing::Message() << "f " << f << " seed " << seed);
-            test::Random random(seed * 100 + f);
-            std::vector<float> height = random.floats(mesh.size(), -1, 1);
-            if (seed % 2) {
-                for (float& h : height) h = std::floor(h * 5) / 5;
-            }
-            expect_levels_of_flood(mesh, height,
-                                   static_cast<std::uint32_t>(random.word() % mesh.size()));
-        }
-    }
-}
-
-TEST(Basins, LevelsOfAPrismAndOfAPlain) {
-    // Height of the centre of a prism with many sides: a ring of basins about a ridge.
-    const SphereMesh mesh = geodesic_sphere(16);
-    std::vector<float> height;
-    for (std::size_t v = 0; v < mesh.size(); ++v) {
-        float most = 0;
-        for (int n = 0; n < 24; ++n) {
-            const double angle = n * 0.2617993877991494;
-            most = std::max(most, static_cast<float>(0.1 * std::cos(angle) * mesh.x[v] +
-                                                     0.1 * std::sin(angle) * mesh.y[v]));
-        }
-        height.push_back(most + 0.15F * std::abs(mesh.z[v]));
-    }
-    expect_levels_of_flood(mesh, height, 0);
-    expect_levels_of_flood(mesh, height, static_cast<std::uint32_t>(mesh.size()) / 2);
-    const std::vector<float> flat(mesh.size(), 1.0F);
-    std::vector<std::uint32_t> down = oracle::steepest_descent(flat, mesh.neighbour, 6);
-    const Basins plain(flat, mesh, down, 7);
-    for (std::uint32_t v = 0; v < mesh.size(); ++v) ASSERT_EQ(plain.level(v), 1.0F);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "core/vectors.h"
 #include "host/physics/solids.h"
 #include "lab/random.h"
+#include "oracle/geodesic_sphere.h"
 #include "physics/qhull.h"
 
 // Convex hulls, for tests of pose landscapes.
@@ -72,7 +73,7 @@ inline std::vector<Vec3> dome_points(double r, unsigned bands, unsigned n) {
 
 // Corners of a geodesic ball.
 inline std::vector<Vec3> ball_points(double r, unsigned frequency) {
-    const physics::SphereMesh mesh = physics::geodesic_sphere(frequency);
+    const SphereMesh mesh = geodesic_sphere(frequency);
     std::vector<Vec3> points;
     for (std::size_t n = 0; n < mesh.size(); ++n)
         points.push_back({r * mesh.x[n], r * mesh.y[n], r * mesh.z[n]});

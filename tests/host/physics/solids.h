@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/thread_pool.h"
+#include "physics/assess.h"
 #include "physics/bodies.h"
-#include "physics/landscape.h"
 #include "physics/tipping.h"
 #include "standard.h"
 
@@ -80,6 +81,20 @@ inline physics::Candidate standing(device::Device& device, const SolidCells& cel
     candidate.support_polygon = base_polygon(cells);
     candidate.support_height_m = *std::min_element(cells.k.begin(), cells.k.end()) * cells.voxel_m;
     return candidate;
+}
+
+// Of a candidate whose parts are these, exactly, and of one whose parts are voxels.
+inline physics::Stability stability(const std::vector<std::vector<Vec3>>& corners,
+                                    const physics::Candidate& candidate, double resolution_m = 0) {
+    return physics::assess(physics::standing_hull({corners, resolution_m}, candidate), candidate);
+}
+inline physics::Stability stability(const SolidCells& cells, const physics::Candidate& candidate) {
+    ThreadPool one(1);
+    constexpr std::size_t parts = 4;  // more than any of these solids has
+    return physics::assess(
+        physics::standing_hull(physics::part_hulls(cells, {}, std::vector<bool>(parts, true), one),
+                               candidate),
+        candidate);
 }
 
 // A regular n-gon of radius r about the z axis.

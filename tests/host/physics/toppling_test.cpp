@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/random.h"
-#include "device/devices.h"
+#include "host/physics/solids.h"
 #include "physics/blow.h"
 #include "physics/overturning.h"
 #include "testing.h"
@@ -41,9 +41,7 @@ struct Brick {
         for (unsigned c = 0; c < 8; ++c)
             vertices[0].push_back(
                 {(c & 1 ? 0.5 : -0.5) * x, (c & 2 ? 0.5 : -0.5) * y, c & 4 ? z : 0});
-        const auto device = device::open_native(1);
-        const SupportTable table(*device, vertices, 0, geodesic_sphere(8));
-        tipping = evaluate(*device, table, std::span(&candidate, 1), Passes::exact)[0];
+        tipping = test::stability(vertices, candidate);
     }
     Toppling toppling(const SlideResult& sliding = {}) const {
         return {candidate, body, tipping, sixteen(), sliding, brick_friction};
@@ -222,9 +220,7 @@ Stability tipping_of(const Candidate& candidate) {
     for (unsigned c = 0; c < 8; ++c)
         vertices[0].push_back({(c & 1 ? 0.5 : -0.5) * width, (c & 2 ? 0.5 : -0.5) * depth,
                                floor_m + (c & 4 ? height : 0)});
-    const auto device = device::open_native(1);
-    const SupportTable table(*device, vertices, 0, geodesic_sphere(8));
-    return evaluate(*device, table, std::span(&candidate, 1), Passes::exact)[0];
+    return test::stability(vertices, candidate);
 }
 
 TEST(Overturning, ABookcaseAsStaticsHasIt) {

@@ -5,7 +5,7 @@
 #include "graph/stable_objects.h"
 #include "host/safety/room.h"
 #include "objects/object_stage.h"
-#include "physics/landscape.h"
+#include "physics/part_hulls.h"
 #include "safety/safety_stage.h"
 
 namespace topple::test {
@@ -25,7 +25,8 @@ struct AssessedRoom {
         const auto primitives = static_cast<std::int32_t>(room.object_of_primitive.size());
         const auto bodies = physics::mass_properties(device, cells, primitives, room.density_kg_m3);
         const graph::ContactGraph contacts = graph::build_contact_graph(device, cells, primitives);
-        const physics::SupportTable table(device, cells, primitives, physics::geodesic_sphere(16));
+        const physics::PartHulls hulls = physics::part_hulls(
+            cells, {}, std::vector<bool>(room.object_of_primitive.size(), true), device.threads());
         std::vector<double> density(room.objects.size(), 0.0);  // by object
         for (std::size_t p = room.object_of_primitive.size(); p-- > 0;)
             density[room.object_of_primitive[p]] = room.density_kg_m3[p];
@@ -51,7 +52,7 @@ struct AssessedRoom {
             object.inertia = inertia[o];
             objects.push_back(std::move(object));
         }
-        find_barriers(device, table, solids, {}, room.object_of_primitive, friction, objects);
+        find_barriers(device, hulls, solids, {}, room.object_of_primitive, friction, objects);
         at_risk = risk_objects(objects);
     }
 };

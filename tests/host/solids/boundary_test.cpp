@@ -4,8 +4,8 @@
 #include "device/devices.h"
 #include "host/solids/boxes.h"
 #include "physics/bodies.h"
+#include "physics/part_hulls.h"
 #include "physics/qhull.h"
-#include "physics/solid_hulls.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
 #include "testing.h"
@@ -50,7 +50,7 @@ TEST(Boundary, AnAskewBoxHasItsVolumeCentreAndHullAtAnyVoxelSize) {
                 EXPECT_NEAR(b.bodies[0].center[a], box.middle[a], 0.02 * voxel);
             ThreadPool threads(2);
             const auto points =
-                physics::solid_hulls(b.scanned.cells, b.boundary, {true}, threads)[0];
+                physics::part_hulls(b.scanned.cells, b.boundary, {true}, threads).corners[0];
             double inside = 0;
             for (const Vec3& p : points) {
                 EXPECT_TRUE(box.holds({p[0], p[1], p[2]}, 1e-5)) << p[0] << " " << p[1];

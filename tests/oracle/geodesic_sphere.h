@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: MIT
+#pragma once
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <utility>
+#include <vector>
 
-#include "physics/landscape.h"
-#include "topple/error.h"
+#include "topple/input.h"
 
-namespace topple::physics {
-namespace {
+// Directions for tests that sample landscapes.
+namespace topple::test {
+
+// A geodesic mesh of the unit sphere: 10 f^2 + 2 directions for frequency f, six neighbours each
+// (the twelve of valence five repeat themselves once). Direction 0 is exactly +z.
+struct SphereMesh {
+    std::vector<float> x, y, z;
+    std::vector<std::uint32_t> neighbour;  // 6 per direction
+    std::size_t size() const { return x.size(); }
+};
 
 struct Icosahedron {
     std::array<Vec3, 12> vertex;
@@ -18,7 +28,7 @@ struct Icosahedron {
 };
 
 // One vertex at each pole; two rings of five between. Square roots only: the same bits everywhere.
-Icosahedron icosahedron() {
+inline Icosahedron icosahedron() {
     const double root5 = std::sqrt(5.0), ring = 2 / root5, height = 1 / root5;
     const double c1 = (root5 - 1) / 4, s1 = std::sqrt(10 + 2 * root5) / 4;   // 72 degrees
     const double c2 = -(root5 + 1) / 4, s2 = std::sqrt(10 - 2 * root5) / 4;  // 144 degrees
@@ -43,11 +53,11 @@ Icosahedron icosahedron() {
 
 // Numbers the points of the subdivided faces; a point on an edge or corner is one point, whichever
 // face asks. A face asks once for each.
-class Points {
+class SubdividedFaces {
   public:
     static constexpr std::uint32_t none = UINT32_MAX;
 
-    Points(const Icosahedron& ico, unsigned frequency)
+    SubdividedFaces(const Icosahedron& ico, unsigned frequency)
         : ico_(ico), frequency_(frequency), shared_(corners + corners * corners * frequency, none) {
         direction.reserve(10 * std::size_t{frequency} * frequency + 2);
     }
@@ -93,23 +103,18 @@ class Points {
     std::vector<std::uint32_t> shared_;  // of corners and points on edges: the number
 };
 
-}  // namespace
-
-SphereMesh geodesic_sphere(unsigned frequency) {
-    if (frequency < 1 || frequency > 1024) {
-        throw Error(ErrorKind::usage, "geodesic_sphere: frequency " + std::to_string(frequency) +
-                                          " is outside of 1 to 1024");
-    }
+inline SphereMesh geodesic_sphere(unsigned frequency) {
     const Icosahedron ico = icosahedron();
-    Points points(ico, frequency);
+    SubdividedFaces points(ico, frequency);
     std::vector<std::array<std::uint32_t, 2>> edges;
     edges.reserve(60 * std::size_t{frequency} * (frequency + 1));
     std::vector<std::uint32_t> number;  // of this face's points
     for (const auto& face : ico.face) {
-        number.assign((frequency + 1) * (std::size_t{frequency} + 1), Points::none);
+        number.assign((frequency + 1) * (std::size_t{frequency} + 1), SubdividedFaces::none);
         const auto at = [&](unsigned a, unsigned b) {
             std::uint32_t& known = number[a * (frequency + 1) + b];
-            if (known == Points::none) known = points.number(face, {frequency - a - b, a, b});
+            if (known == SubdividedFaces::none)
+                known = points.number(face, {frequency - a - b, a, b});
             return known;
         };
         for (unsigned a = 0; a < frequency; ++a) {
@@ -144,9 +149,7 @@ SphereMesh geodesic_sphere(unsigned frequency) {
         for (; e < edges.size() && edges[e][0] == v; ++e) mesh.neighbour[v * 6 + k++] = edges[e][1];
         for (; k < 6; ++k) mesh.neighbour[v * 6 + k] = mesh.neighbour[v * 6];
     }
-    std::erase_if(edges, [](const auto& edge) { return edge[0] > edge[1]; });
-    mesh.edge = std::move(edges);
     return mesh;
 }
 
-}  // namespace topple::physics
+}  // namespace topple::test

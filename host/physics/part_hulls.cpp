@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "physics/solid_hulls.h"
+#include "physics/part_hulls.h"
 
 #include <tuple>
 #include <utility>
 
 #include "physics/merge_close_points.h"
 #include "physics/qhull.h"
-#include "physics/support_rows.h"
 #include "solids/cell_shape.h"
 
 namespace topple::physics {
 
-std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const BoundaryCells& boundary,
-                                           const std::vector<bool>& wanted, ThreadPool& threads) {
+PartHulls part_hulls(const SolidCells& cells, const BoundaryCells& boundary,
+                     const std::vector<bool>& wanted, ThreadPool& threads) {
     SolidCells whole = cells;
     std::vector<std::vector<std::size_t>> parts(wanted.size());
     std::size_t n = 0;
@@ -28,7 +27,8 @@ std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const Bounda
     for (std::int32_t& p : whole.primitive)
         if (p >= 0 && !wanted[p]) p = -1;
     const auto coarse = voxel_hulls(whole, static_cast<std::int32_t>(wanted.size()));
-    std::vector<std::vector<Vec3>> out(wanted.size());
+    PartHulls out{std::vector<std::vector<Vec3>>(wanted.size()),
+                  solids::form_error_m(boundary, cells.voxel_m)};
     threads.each(wanted.size(), 1, [&](std::size_t p) {
         const double h = cells.voxel_m;
         std::vector<Vec3> points;
@@ -37,9 +37,9 @@ std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const Bounda
         constexpr double alike = 0.005;  // of a voxel
         points = merge_close_points(points, alike * h);
         if (const auto hull = convex_hull(points)) {
-            for (const std::uint32_t v : hull->vertices) out[p].push_back(points[v]);
+            for (const std::uint32_t v : hull->vertices) out.corners[p].push_back(points[v]);
         } else {
-            out[p] = std::move(points);
+            out.corners[p] = std::move(points);
         }
     });
     return out;

@@ -9,24 +9,23 @@
 namespace topple::physics {
 namespace {
 
-class Evaluate : public ::testing::Test {
+class Assess : public ::testing::Test {
   protected:
     std::unique_ptr<device::Device> device = device::open_native(2);
 };
 
-TEST_F(Evaluate, OverhangTipsOverTheTable) {
+TEST_F(Assess, OverhangTipsOverTheTable) {
     // A 0.4 m bar, 0.1 m wide and high, on a table that holds the 0.25 m of it with x < 0.05.
     const SolidCells cells = test::voxelise({{0, test::box({-0.2, 0, 0}, {0.2, 0.1, 0.1})}},
                                             {-0.2, 0, 0}, {0.2, 0.1, 0.1}, 0.01);
-    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
     Candidate bar = test::standing(*device, cells);
     bar.support_polygon = {{-0.2, 0}, {0.05, 0}, {0.05, 0.1}, {-0.2, 0.1}};
     Candidate out = bar;
     out.support_polygon = {{-0.2, 0}, {-0.03, 0}, {-0.03, 0.1}, {-0.2, 0.1}};
     Candidate none = bar;
     none.support_polygon.clear();
-    const std::vector<Candidate> candidates{bar, out, none};
-    const std::vector<Stability> s = evaluate(*device, table, candidates);
+    const Stability s[] = {test::stability(cells, bar), test::stability(cells, out),
+                           test::stability(cells, none)};
     const double weight = bar.body.mass_kg * gravity;
     EXPECT_NEAR(s[0].barrier_J, weight * (std::sqrt(0.05 * 0.05 + 0.05 * 0.05) - 0.05),
                 1e-6 * weight);
@@ -38,7 +37,7 @@ TEST_F(Evaluate, OverhangTipsOverTheTable) {
     EXPECT_LT(s[2].margin_m, 0);
 }
 
-TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
+TEST_F(Assess, WhatTipsOverTheTableFallsToTheFloor) {
     // A bar as above, but 0.2 m wide, on a table 0.5 m above a floor; on a plane it would land no
     // lower.
     const double table_m = 0.5;
@@ -47,7 +46,6 @@ TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
                                              {1, test::box({-0.5, -0.5, -0.05}, {0.05, 0.5, 0})},
                                              {2, test::box({-1, -1, -0.55}, {1, 1, -table_m})}},
                                             {-1, -1, -0.55}, {1, 1, 0.1}, 0.025);
-    const SupportTable table(*device, cells, 3, geodesic_sphere(16));
     Candidate bar = test::standing(
         *device, test::voxelise({solid}, {-0.2, 0, 0}, {0.2, 0.2, 0.1}, cells.voxel_m));
     bar.support_polygon = {{-0.2, 0}, {0.05, 0}, {0.05, 0.2}, {-0.2, 0.2}};
@@ -62,7 +60,7 @@ TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
         return i >= 2 && k == -1;
     };
     EXPECT_EQ(drops_when_tipped_m(cells, columns, bar, beyond), std::vector<double>(4, 0.0));
-    const Stability s = evaluate(*device, table, std::span(&bar, 1))[0];
+    const Stability s = test::stability(cells, bar);
     const double weight = bar.body.mass_kg * gravity, climb = std::sqrt(2) * 0.05 - 0.05;
     ASSERT_EQ(s.curve.size(), 1u);
     EXPECT_NEAR(s.curve[0].W_J, weight * climb, 1e-6 * weight);
@@ -81,23 +79,22 @@ TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
     bar.support_polygon = {{-0.2, 0}, {-0.01, 0}, {-0.01, 0.2}, {-0.2, 0.2}};
     bar.edge_drop_m = drops_when_tipped_m(cells, columns, bar);
     ASSERT_EQ(bar.edge_drop_m.size(), 1u);
-    const Stability out = evaluate(*device, table, std::span(&bar, 1))[0];
+    const Stability out = test::stability(cells, bar);
     EXPECT_EQ(out.barrier_J, 0);
     EXPECT_NEAR(out.release_J, weight * bar.edge_drop_m[0], 1e-6 * weight);
     bar.edge_drop_m = {0, 0};
-    EXPECT_THROW(evaluate(*device, table, std::span(&bar, 1)), Error);
+    EXPECT_THROW(test::stability(cells, bar), Error);
 }
 
-TEST_F(Evaluate, WhatHangsBesideTheSupportDoesNotLiftIt) {
+TEST_F(Assess, WhatHangsBesideTheSupportDoesNotLiftIt) {
     // A box with a strip along one side that hangs 10 cm below the table on which it stands.
     const SolidCells cells = test::voxelise({{0, test::box({0, 0, 0}, {0.2, 0.2, 0.3})},
                                              {0, test::box({0.2, 0, -0.1}, {0.22, 0.2, 0.3})}},
                                             {0, 0, -0.1}, {0.22, 0.2, 0.3}, 0.02);
-    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
     Candidate box = test::standing(*device, cells);
     box.support_polygon = {{0, 0}, {0.2, 0}, {0.2, 0.2}, {0, 0.2}};
     box.support_height_m = 0;
-    const Stability s = evaluate(*device, table, std::span(&box, 1), Passes::exact)[0];
+    const Stability s = test::stability(cells, box);
     const double weight = box.body.mass_kg * gravity, h = box.body.center[2];
     const double edge = 0.2 - box.body.center[0];  // the nearest
     EXPECT_NEAR(s.barrier_J, weight * (std::hypot(h, edge) - h), 1e-9 * weight);
@@ -105,25 +102,24 @@ TEST_F(Evaluate, WhatHangsBesideTheSupportDoesNotLiftIt) {
     EXPECT_GT(s.release_J, 0);
 }
 
-TEST_F(Evaluate, GroupsCombineTheirMembersRows) {
+TEST_F(Assess, GroupsCombineTheirMembersRows) {
     // A slab on a thin post: on its own the slab is flat and safe, together they tip.
     const SolidCells cells = test::voxelise({{0, test::box({-0.02, -0.02, 0}, {0.02, 0.02, 0.5})},
                                              {1, test::box({-0.2, -0.2, 0.5}, {0.2, 0.2, 0.54})}},
                                             {-0.2, -0.2, 0}, {0.2, 0.2, 0.54}, 0.01);
-    const SupportTable table(*device, cells, 2, geodesic_sphere(16));
     const std::vector<double> density{700, 700};
     const std::vector<MassProperties> bodies = mass_properties(*device, cells, 2, density);
     Candidate both;
     both.primitives = {0, 1};
     both.body = combine(bodies);
     both.support_polygon = {{-0.02, -0.02}, {0.02, -0.02}, {0.02, 0.02}, {-0.02, 0.02}};
-    const Stability s = evaluate(*device, table, std::span(&both, 1))[0];
+    const Stability s = test::stability(cells, both);
     const double h = both.body.center[2], weight = both.body.mass_kg * gravity;
     EXPECT_NEAR(s.barrier_J, weight * (std::sqrt(h * h + 0.02 * 0.02) - h), 1e-5 * weight);
     EXPECT_GT(s.release_J, weight * 0.1);  // it comes to lie on the slab's rim
 }
 
-TEST_F(Evaluate, UnevenFeetDoNotRock) {
+TEST_F(Assess, UnevenFeetDoNotRock) {
     // A stool whose one foot is a voxel short, as scans have it, still stands.
     const double voxel = 0.02;
     std::vector<test::Solid> parts{{0, test::box({-0.2, -0.2, 0.4}, {0.2, 0.2, 0.44})}};
@@ -135,10 +131,9 @@ TEST_F(Evaluate, UnevenFeetDoNotRock) {
         }
     }
     const SolidCells cells = test::voxelise(parts, {-0.2, -0.2, 0}, {0.2, 0.2, 0.44}, voxel);
-    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
     Candidate stool = test::standing(*device, cells);
     stool.support_polygon = {{-0.2, -0.2}, {0.2, -0.2}, {0.2, 0.2}, {-0.2, 0.2}};
-    const Stability s = evaluate(*device, table, std::span(&stool, 1))[0];
+    const Stability s = test::stability(cells, stool);
     const double h = stool.body.center[2], weight = stool.body.mass_kg * gravity;
     const double over_an_edge = weight * (std::sqrt(h * h + 0.2 * 0.2) - h);
     EXPECT_NEAR(s.barrier_J, over_an_edge, 0.25 * over_an_edge);
@@ -146,40 +141,38 @@ TEST_F(Evaluate, UnevenFeetDoNotRock) {
 
 // A dent under a box lets its hull rock; it stood, so that it tips over its edges, as the closed
 // form has it.
-TEST_F(Evaluate, WhatStoodTipsOverItsSupport) {
+TEST_F(Assess, WhatStoodTipsOverItsSupport) {
     const double voxel = 0.02;
     const SolidCells cells =
         test::voxelise({{0, test::box({-0.1, -0.1, 0}, {0.1, 0.1, 0.4})},
                         {0, test::box({-0.02, -0.02, -0.08}, {0.02, 0.02, 0})}},
                        {-0.1, -0.1, -0.08}, {0.1, 0.1, 0.4}, voxel);
-    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
     Candidate box = test::standing(*device, cells);
     box.support_polygon = {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}};
     box.support_height_m = 0;
     box.stood = true;
-    const Stability s = evaluate(*device, table, std::span(&box, 1), Passes::exact)[0];
+    const Stability s = test::stability(cells, box);
     const double h = box.body.center[2], weight = box.body.mass_kg * gravity;
     EXPECT_NEAR(s.barrier_J, weight * (std::sqrt(h * h + 0.1 * 0.1) - h), 1e-5 * weight);
     // Outside of its support it falls, whatever was seen.
     box.support_polygon = {{0.05, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {0.05, 0.1}};
-    EXPECT_EQ(evaluate(*device, table, std::span(&box, 1), Passes::exact)[0].barrier_J, 0);
+    EXPECT_EQ(test::stability(cells, box).barrier_J, 0);
 }
 
 // A sign on a hook: its centre hangs below what holds it.
-TEST_F(Evaluate, WhatHangsFromAboveItsCentreStays) {
+TEST_F(Assess, WhatHangsFromAboveItsCentreStays) {
     const SolidCells cells = test::voxelise({{0, test::box({-0.2, -0.02, 0}, {0.2, 0.02, 0.3})}},
                                             {-0.2, -0.02, 0}, {0.2, 0.02, 0.3}, 0.02);
-    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
     Candidate sign = test::standing(*device, cells);
     sign.support_polygon = {{-0.1, -0.02}, {0.1, -0.02}, {0.1, 0.02}, {-0.1, 0.02}};
     sign.support_height_m = 0.3;
     sign.stood = true;
-    const Stability s = evaluate(*device, table, std::span(&sign, 1), Passes::exact)[0];
+    const Stability s = test::stability(cells, sign);
     const double weight = sign.body.mass_kg * gravity;
     EXPECT_NEAR(s.barrier_J, weight * (std::hypot(0.15, 0.02) + 0.15), 1e-5 * weight);
 }
 
-TEST_F(Evaluate, FarFromTheOriginNothingChanges) {
+TEST_F(Assess, FarFromTheOriginNothingChanges) {
     const SolidCells near = test::voxelise({{0, test::box({0, 0, 0}, {0.3, 0.2, 0.5})}}, {0, 0, 0},
                                            {0.3, 0.2, 0.5}, 0.02);
     SolidCells far = near;
@@ -188,20 +181,18 @@ TEST_F(Evaluate, FarFromTheOriginNothingChanges) {
     double barrier[2];
     for (int n = 0; n < 2; ++n) {
         const SolidCells& cells = n ? far : near;
-        const SupportTable table(*device, cells, 1, geodesic_sphere(16));
         const Candidate candidate = test::standing(*device, cells);
-        barrier[n] = evaluate(*device, table, std::span(&candidate, 1))[0].barrier_J;
+        barrier[n] = test::stability(cells, candidate).barrier_J;
     }
     EXPECT_NEAR(barrier[0], barrier[1], 1e-5 * barrier[0]);
 }
 
-TEST_F(Evaluate, OneVoxelAndNoVoxels) {
+TEST_F(Assess, OneVoxelAndNoVoxels) {
     SolidCells cells;
     cells.voxel_m = 0.02;
     cells.i = cells.j = cells.k = {3};
     cells.primitive = {1};
     cells.basis = {Basis::surface};
-    const SupportTable table(*device, cells, 3, geodesic_sphere(16));
     Candidate nothing, cube;
     nothing.primitives = {0, 2};
     cube.primitives = {1, 2};
@@ -209,17 +200,11 @@ TEST_F(Evaluate, OneVoxelAndNoVoxels) {
     cube.body = mass_properties(*device, cells, 3, density)[1];
     cube.support_polygon = {{0.06, 0.06}, {0.08, 0.06}, {0.08, 0.08}, {0.06, 0.08}};
     cube.support_height_m = 0.06;
-    const std::vector<Candidate> candidates{nothing, cube, Candidate{}};
-    const std::vector<Stability> s = evaluate(*device, table, candidates);
-    EXPECT_EQ(s[0].barrier_J, 0);
-    EXPECT_EQ(s[2].barrier_J, 0);
-
-    EXPECT_EQ(s[1].barrier_J, 0);  // one voxel may as well be a ball
-    EXPECT_NEAR(s[1].margin_m, 0.01, 1e-12);
-    EXPECT_TRUE(evaluate(*device, table, {}).empty());
-    Candidate wrong;
-    wrong.primitives = {3};
-    EXPECT_THROW(evaluate(*device, table, std::span(&wrong, 1)), Error);
+    EXPECT_EQ(test::stability(cells, nothing).barrier_J, 0);
+    EXPECT_EQ(test::stability(cells, Candidate{}).barrier_J, 0);
+    const Stability s = test::stability(cells, cube);
+    EXPECT_EQ(s.barrier_J, 0);  // one voxel may as well be a ball
+    EXPECT_NEAR(s.margin_m, 0.01, 1e-12);
 }
 
 using test::box;
