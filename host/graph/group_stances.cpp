@@ -12,7 +12,6 @@ namespace topple::graph {
 namespace {
 
 constexpr std::uint32_t directions = 64;
-constexpr double nothing_holds = -1e30;  // margins below
 
 // Room for at least so many, and for more the next time.
 template <class T>
@@ -138,7 +137,7 @@ std::vector<Stance> GroupStances::of(std::span<const GroupQuery> groups) {
     for (const GroupQuery& group : groups) out.push_back(add(group, batch));
     const std::vector<float> margin = margins(batch);
     for (std::size_t n = 0; n < out.size(); ++n)
-        if (margin[n] > nothing_holds) out[n].margin_m = margin[n];
+        if (batch.first[n] < batch.first[n + 1]) out[n].margin_m = margin[n];
     return out;
 }
 

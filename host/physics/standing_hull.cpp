@@ -67,9 +67,9 @@ std::shared_ptr<HullWays> ways_of(const std::vector<Vec3>& corners, double resol
 // Contacts are known to a voxel or two, so that the hull may seem to rock by what is not known of
 // them: by an angle of two voxels of height over the distance at which its footing holds it.
 bool is_dent(const HullWays& ways, double margin_m, double resolution_m) {
-    constexpr double most_angle = 0.5;
+    constexpr double largest_dent_rad = 0.5;
     const double angle =
-        std::min(std::atan(2 * resolution_m / std::max(margin_m, resolution_m)), most_angle);
+        std::min(std::atan(2 * resolution_m / std::max(margin_m, resolution_m)), largest_dent_rad);
     return ways.rest()[2] >= std::cos(angle) &&
            ways.start_height() - ways.rest_height() <= 2 * resolution_m;
 }
