@@ -250,8 +250,9 @@ function preparePrint(scene, state, plan, parts) {
 
 async function start() {
   const scene = await loadScene();
-  scene.boxes = boxesOf(scene);
-  scene.partBoxes = partBoxesOf(scene);
+  // Of each object, of all of them (key null), and of each part.
+  scene.boxes = boxesBy(scene.view, 1).set(null, wholeBox(scene.view));
+  scene.partBoxes = boxesBy(scene.view, 0);
   scene.planBox = planBoxOf(scene);
   scene.floor = floorOf(scene, scene.boxes);
   scene.painter = new Painter(scene);

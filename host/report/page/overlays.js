@@ -46,25 +46,15 @@ function fieldMesh(scene, name, reach) {
 // Makes the geometry a shaft and a head with five sides, along z from 0 to 1, one unit thick at the head.
 function shapeArrow(geometry) {
   const corners = [], index = [], sides = 5;
-  const ring = (radius, z) => {
+  [[0.22, 0], [0.22, 0.55], [0.75, 0.55], [0.01, 1]].forEach(([radius, z], ring) => {
     for (let i = 0; i < sides; ++i) {
       const angle = 2 * Math.PI * i / sides;
       corners.push(radius * Math.cos(angle), radius * Math.sin(angle), z);
+      if (ring === 0) continue;
+      const a = (ring - 1) * sides + i, b = (ring - 1) * sides + (i + 1) % sides;
+      index.push(a, b, b + sides, a, b + sides, a + sides);
     }
-  };
-  const join = (a, b) => {
-    for (let i = 0; i < sides; ++i) {
-      const next = (i + 1) % sides;
-      index.push(a + i, a + next, b + next, a + i, b + next, b + i);
-    }
-  };
-  ring(0.22, 0);
-  ring(0.22, 0.55);
-  ring(0.75, 0.55);
-  ring(0.01, 1);
-  join(0, sides);
-  join(sides, 2 * sides);
-  join(2 * sides, 3 * sides);
+  });
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
   geometry.setIndex(index);
   return geometry;

@@ -44,16 +44,6 @@ function boxesBy(view, which) {
   return boxes;
 }
 
-// Of each object and of all of them (key null): of all it is that of the records' 2nd to 98th hundredths, since scans have strays.
-function boxesOf(scene) {
-  return boxesBy(scene.view, 1).set(null, wholeBox(scene.view));
-}
-
-// Of each part.
-function partBoxesOf(scene) {
-  return boxesBy(scene.view, 0);
-}
-
 // The box that the plan shows: of all, and no object that can move, nor what may be furniture, lies outside.
 function planBoxOf(scene) {
   const {low, high} = scene.boxes.get(null), out = {low: [...low], high: [...high]};
@@ -62,6 +52,7 @@ function planBoxOf(scene) {
   return out;
 }
 
+// Of all that is drawn: of the records' 2nd to 98th hundredths, since scans have strays.
 function wholeBox(view) {
   const {cell, count} = drawnRecords(view), box = {low: [-0.5, -0.5, -0.5], high: [0.5, 0.5, 0.5]};
   if (!count) return box;

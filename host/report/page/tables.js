@@ -165,27 +165,24 @@ function figuresOf(scene, object) {
     ['Centre of mass, in the scan\u2019s frame', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m' +
       within(Math.hypot(...(object.center_of_mass_error_m || [])))],
     ['Where', placeText(scene, object) || '\u2013']];
-  if (!object.grounded) {
-    pairs.push([element('span', {}, [term('barrier', 'Barrier'), ': energy that moves it']),
-      barrierText(object, 'J') + (isDoubtful(object) ? '' : within(object.barrier_error_J))],
-    [element('span', {}, ['It then can ', term('release', 'release')]), number(releaseOf(object), 'J')]);
-    if (object.footprint_error_m > 0) pairs.push(['Error of its footprint', number(1000 * object.footprint_error_m, 'mm')]);
-  }
+  if (object.grounded) return pairs;
+  pairs.push([element('span', {}, [term('barrier', 'Barrier'), ': energy that moves it']),
+    barrierText(object, 'J') + (isDoubtful(object) ? '' : within(object.barrier_error_J))],
+  [element('span', {}, ['It then can ', term('release', 'release')]), number(releaseOf(object), 'J')]);
+  if (object.footprint_error_m > 0) pairs.push(['Error of its footprint', number(1000 * object.footprint_error_m, 'mm')]);
   const f = object.fragility || {};
   if (f.pga_g) {
     pairs.push(['Half of all earthquakes upset it from', `${twoDigits(f.pga_g)} g` + (f.pgv_m_s ? `, or ${twoDigits(f.pgv_m_s)} m/s` : '')]);
   }
   if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
-  for (const name of object.grounded ? [] : scene.disturbances) {
+  for (const name of scene.disturbances) {
     pairs.push([element('span', {}, [term('risk', 'Risk'), ` from ${causeOf(name)}`]), riskText(object, name)]);
   }
-  if (!object.grounded && object.unsafety_category) {
+  if (object.unsafety_category) {
     pairs.push([element('span', {}, [term('category', 'Category'), ', by which to act']),
       object.unsafety_category + (object.unsafety_certain ? '' : `, ${object.unsafety_category === 'none' ? 'but not certain' : 'or lower'}: ${uncertainText(object)}`)]);
   }
-  if (!object.grounded) {
-    pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
-  }
+  pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
   return pairs;
 }
 
@@ -250,8 +247,8 @@ function riskText(object, name) {
 }
 
 function azimuthText(degrees) {
-  const names = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];
-  return Math.round(degrees) + '\u00b0 (' + names[Math.round(degrees / 45) % 8] + ')';
+  const initials = compassOf(degrees).split('-').map(word => word[0].toUpperCase());
+  return `${Math.round(degrees)}\u00b0 (${initials.join('')})`;
 }
 
 function areaText(area) {
