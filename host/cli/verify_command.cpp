@@ -16,7 +16,7 @@
 #include "io/text.h"
 #include "mujoco/settle_apart.h"
 #include "mujoco/verdict.h"
-#include "report/verified.h"
+#include "report/report.h"
 #include "result/scene_json.h"
 #include "topple/export.h"
 

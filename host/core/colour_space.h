@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 // Colours as files store them (sRGB), as light adds up (linear), and as eyes tell them apart
@@ -11,6 +12,23 @@
 namespace topple {
 
 using Rgb8 = std::array<std::uint8_t, 3>;  // sRGB, red, green, blue
+
+// Of colours, whose mean is rounded channel by channel.
+struct ColourSum {
+    std::array<std::uint64_t, 3> channel{};
+    std::uint64_t count = 0;
+
+    void add(const Rgb8& colour) {
+        for (std::size_t c = 0; c < 3; ++c) channel[c] += colour[c];
+        ++count;
+    }
+    Rgb8 mean() const {
+        Rgb8 out{};
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = static_cast<std::uint8_t>((channel[c] + count / 2) / count);
+        return out;
+    }
+};
 
 // IEC 61966-2-1; both from 0 to 1.
 inline double linear_of_srgb(double v) {

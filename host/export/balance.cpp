@@ -110,7 +110,7 @@ class Statics {
         const Eigen::Map<const Eigen::Matrix3d> inertia(body.inertia_kg_m2.data());
         light_[n] = 1 / body.mass_kg;
         supple_[n] = inertia.inverse();
-        const ConvexPart box = box_around(body.parts);
+        const Extents<double> box = box_around(body.parts);
         reach_m_[n] = (eigen(box.high) - eigen(box.low)).norm() / 2;
     }
     void add(const Touch& touch) {

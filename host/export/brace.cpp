@@ -23,11 +23,9 @@ constexpr double firm_share = 0.5;
 
 // An upright bar of a square section, from z up to a point.
 std::optional<ConvexPart> bar(const Vec3& to, double z, double half_m) {
-    std::vector<Vec3> points;
-    for (unsigned c = 0; c < 8; ++c)
-        points.push_back({to[0] + ((c & 1) != 0 ? half_m : -half_m),
-                          to[1] + ((c & 2) != 0 ? half_m : -half_m), (c & 4) != 0 ? to[2] : z});
-    return hull_part(points);
+    const Extents<double> box{{to[0] - half_m, to[1] - half_m, z},
+                              {to[0] + half_m, to[1] + half_m, to[2]}};
+    return hull_part(box.corners());
 }
 
 // A bar under a body, of its own or of the world.
@@ -192,7 +190,7 @@ bool add_struts(const std::vector<Body>& bodies, const std::vector<bool>& stands
     const std::vector<Point2> points = footing_of(bodies, stands, body);
     const double firm = firm_share * body.firm_m, margin = weights.margin(points);
     if (margin >= firm) return true;
-    const ConvexPart box = box_around(body.parts);
+    const Extents<double> box = box_around(body.parts);
     const double longest_m = std::max(longest_share * (box.high[2] - box.low[2]), 8 * half_m);
     for (Strut& strut :
          enough(points, weights, struts_of(bodies, stands, body, half_m, longest_m), firm)) {
@@ -215,7 +213,7 @@ bool leans_on_fixed(const std::vector<Body>& bodies, const Body& body, double wi
 // Whether anything is close below it, so that it was set down there and does not hang.
 bool near_below(const std::vector<Body>& bodies, const Body& body) {
     constexpr double close_m = 0.1;
-    ConvexPart below = box_around(body.parts);
+    Extents<double> below = box_around(body.parts);
     below.high[2] = below.low[2];
     below.low[2] -= close_m;
     return any_near(bodies, below, 0, [&](const Body& other, const ConvexPart& part) {

@@ -13,13 +13,13 @@ namespace {
 // Work goes layer by layer.
 void check_together(const std::vector<Cell>& cells) {
     constexpr std::size_t few = 4096, each = 64;
-    VoxelBox box;
+    Extents<std::int32_t> box;
     for (const Cell& cell : cells) box.add(cell.at);
     for (std::size_t a = 0; a < 3; ++a)
-        if (box.layers(a) > few + each * cells.size())
+        if (layers_of(box, a) > few + each * cells.size())
             throw Error(ErrorKind::input, "the solids have a part of " +
                                               std::to_string(cells.size()) + " voxels in " +
-                                              std::to_string(box.layers(a)) +
+                                              std::to_string(layers_of(box, a)) +
                                               " layers; parse the scan again");
 }
 

@@ -1,37 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
+#include "core/extents.h"
 #include "core/solid_scene.h"
 
 namespace topple::exports {
 
 using Voxel = std::array<std::int32_t, 3>;
 
-// The smallest box around voxels.
-struct VoxelBox {
-    Voxel low = filled(std::numeric_limits<std::int32_t>::max());
-    Voxel high = filled(std::numeric_limits<std::int32_t>::min());
-
-    void add(const Voxel& at) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            low[a] = std::min(low[a], at[a]);
-            high[a] = std::max(high[a], at[a]);
-        }
-    }
-    std::size_t layers(std::size_t axis) const {
-        return static_cast<std::size_t>(std::int64_t{high[axis]} - low[axis]) + 1;
-    }
-
-  private:
-    static Voxel filled(std::int32_t value) { return {value, value, value}; }
-};
+// How many layers of voxels a box around some has along an axis.
+inline std::size_t layers_of(const Extents<std::int32_t>& box, std::size_t axis) {
+    return static_cast<std::size_t>(std::int64_t{box.high[axis]} - box.low[axis]) + 1;
+}
 
 // A voxel that is a clump's, wholly or in part.
 struct Cell {

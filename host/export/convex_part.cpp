@@ -34,16 +34,6 @@ double volume_of(const ConvexPart& part) {
     return six / 6;
 }
 
-void bound(ConvexPart& part) {
-    part.low = part.high = part.corner[0];
-    for (const Vec3& c : part.corner) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            part.low[a] = std::min(part.low[a], c[a]);
-            part.high[a] = std::max(part.high[a], c[a]);
-        }
-    }
-}
-
 // A corner that is so far beyond a plane lies on it.
 constexpr double rounding_m = 1e-8;
 // What is less is no solid: a cube with an edge of half a millimetre.
@@ -151,7 +141,7 @@ std::optional<ConvexPart> hull_part(std::span<const Vec3> points) {
     }
     out.volume_m3 = volume_of(out);
     if (!(out.volume_m3 > 0)) return std::nullopt;
-    bound(out);
+    for (const Vec3& c : out.corner) out.add(c);
     return out;
 }
 
@@ -183,7 +173,7 @@ std::optional<ConvexPart> cut(const ConvexPart& part, const HalfSpace& to) {
     if (out.corner.size() < 4) return std::nullopt;
     out.volume_m3 = volume_of(out);
     if (!(out.volume_m3 > least_volume_m3)) return std::nullopt;
-    bound(out);
+    for (const Vec3& c : out.corner) out.add(c);
     out.solid_each_m3 = part.solid_each_m3;
     for (const Vec3& p : part.solid)
         if (dot(to.normal, p) <= to.offset_m + on_plane_m) out.solid.push_back(p);
@@ -208,8 +198,8 @@ ConvexPart moved(ConvexPart part, const Vec3& by) {
     return part;
 }
 
-Extent extent_along(const ConvexPart& part, const Vec3& n) {
-    Extent out{physics::infinity, -physics::infinity};
+Interval extent_along(const ConvexPart& part, const Vec3& n) {
+    Interval out{physics::infinity, -physics::infinity};
     for (const Vec3& c : part.corner) {
         const double d = dot(n, c);
         out.low = std::min(out.low, d);
@@ -247,7 +237,7 @@ std::optional<Box> as_box(const ConvexPart& part, double tolerance_m) {
     v = unit(along(v, -dot(u, v), u));
     box.axis = {u, v, cross(u, v)};
     for (std::size_t a = 0; a < 3; ++a) {
-        const Extent e = extent_along(part, box.axis[a]);
+        const Interval e = extent_along(part, box.axis[a]);
         box.half_m[a] = (e.high - e.low) / 2;
         box.center = along(box.center, (e.high + e.low) / 2, box.axis[a]);
     }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/extents.h"
 #include "topple/input.h"
 
 namespace topple::exports {
@@ -23,14 +24,13 @@ inline constexpr double on_plane_m = 1e-4;
 // As many points tell where the solid of a part lies.
 inline constexpr std::size_t most_points = 512;
 
-// A convex polytope, metres.
-struct ConvexPart {
+// A convex polytope, metres, with the box around it.
+struct ConvexPart : Extents<double> {
     std::vector<Vec3> corner;
     std::vector<HalfSpace> face;
     // Corners of each face, counter-clockwise as seen from outside.
     std::vector<std::vector<std::uint32_t>> outline;
     double volume_m3 = 0;
-    Vec3 low{}, high{};  // of the box around it
     // Points spread over what of it was found to be solid, and the volume that each stands for.
     std::vector<Vec3> solid;
     double solid_each_m3 = 0;
@@ -55,10 +55,10 @@ ConvexPart shrunk(const ConvexPart& part, double by_m);
 ConvexPart moved(ConvexPart part, const Vec3& by);
 
 // The interval of n . x over the part.
-struct Extent {
+struct Interval {
     double low = 0, high = 0;
 };
-Extent extent_along(const ConvexPart& part, const Vec3& n);
+Interval extent_along(const ConvexPart& part, const Vec3& n);
 
 // The eight corners of a box that is the part to within `tolerance_m`, in the order of the bits
 // (x, y, z) of its own axes; or nothing. Which of the part's faces it follows is the same on every

@@ -26,7 +26,7 @@ constexpr std::size_t most_changes = 3, even_places = 2;
 struct Piece {
     std::int32_t id = 0;
     std::vector<std::size_t> cells;
-    VoxelBox box;
+    Extents<std::int32_t> box;
     double hull = 0;                  // its volume, in voxels
     double excess = 0;                // what the hull holds beyond the solid, in voxels
     std::optional<PieceSolid> solid;  // once it was asked for
@@ -204,7 +204,7 @@ class Decomposition {
     // Where to try cuts along an axis: the layers that begin where the section changes most, and
     // some in between. Ascending, in layers from the piece's lowest.
     std::vector<std::size_t> places(const Piece& piece, std::size_t axis) const {
-        const auto layers = piece.box.layers(axis);
+        const std::size_t layers = layers_of(piece.box, axis);
         std::vector<std::int64_t> count(layers, 0);
         for (const std::size_t n : piece.cells) ++count[grid_[n].at[axis] - piece.box.low[axis]];
         std::vector<std::pair<std::int64_t, std::size_t>> changes;
@@ -235,7 +235,7 @@ class Decomposition {
     Slabs slabs_along(const Piece& piece, std::size_t axis) const {
         Slabs out;
         out.first = places(piece, axis);
-        const auto layers = piece.box.layers(axis);
+        const std::size_t layers = layers_of(piece.box, axis);
         std::vector<std::size_t> slab_of_layer(layers, 0);
         for (std::size_t n = 0; n < layers; ++n)
             slab_of_layer[n] = static_cast<std::size_t>(std::ranges::upper_bound(out.first, n) -

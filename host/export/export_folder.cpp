@@ -11,6 +11,7 @@
 #include "export/colour_texture.h"
 #include "export/write_obj.h"
 #include "io/file_writer.h"
+#include "io/folder_names.h"
 #include "io/replace_file.h"
 #include "io/text.h"
 
@@ -42,13 +43,11 @@ void check_folder_ours(const fs::path& folder) {
     if (status.type() == fs::file_type::not_found) return;
     if (status.type() != fs::file_type::directory)
         io::fail(folder, "exists and is no export of topple; choose another folder");
-    fs::directory_iterator entries(folder, error);
-    if (error) io::fail(folder, "can't be listed: " + error.message());
-    for (; entries != fs::directory_iterator(); entries.increment(error)) {
-        if (error) break;
-        const fs::path file = entries->path();
-        const bool regular = fs::symlink_status(file, error).type() == fs::file_type::regular;
-        if (!regular || (file.filename() != colour_file && !begins_as_ours(file)))
+    for (const std::string& name : io::folder_names(folder, error)) {
+        const fs::path file = folder / name;
+        std::error_code unknown;
+        const bool regular = fs::symlink_status(file, unknown).type() == fs::file_type::regular;
+        if (!regular || (name != colour_file && !begins_as_ours(file)))
             io::fail(file, "is no export of topple's; move it away or choose another folder");
     }
     if (error) io::fail(folder, "can't be listed: " + error.message());

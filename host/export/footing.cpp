@@ -48,7 +48,7 @@ std::optional<Plumb> plumb(const ConvexPart& part, const Point2& p) {
 std::vector<Point2> footing_of(const std::vector<Body>& bodies, const std::vector<bool>& stands,
                                const Body& body) {
     std::vector<Point2> out;
-    const ConvexPart box = box_around(body.parts);
+    const Extents<double> box = box_around(body.parts);
     for (std::size_t n = 0; n < bodies.size(); ++n) {
         if (!stands[n] || &bodies[n] == &body) continue;
         for (const ConvexPart& below : bodies[n].parts) {

@@ -150,7 +150,7 @@ class Merging {
 }  // namespace
 
 void merge_parts(std::vector<Body>& bodies, double voxel_m, ThreadPool& threads) {
-    std::vector<ConvexPart> around(bodies.size());
+    std::vector<Extents<double>> around(bodies.size());
     for (std::size_t n = 0; n < bodies.size(); ++n) around[n] = box_around(bodies[n].parts);
     std::vector<std::vector<ConvexPart>> merged(bodies.size());
     threads.each(bodies.size(), 1, [&](std::size_t n) {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/vectors.h"
-#include "export/names.h"
 #include "topple/error.h"
 
 namespace topple::exports {
@@ -42,6 +41,11 @@ Shape shape_in(const Body& body, const ConvexPart& part) {
 
 }  // namespace
 
+std::string body_name(const Body& body, std::size_t place) {
+    return body.object >= 0 ? "object_" + std::to_string(body.object)
+                            : "pad_" + std::to_string(place);
+}
+
 bool has_mass(const Body& body) {
     return body.mass_kg > 0 && std::isfinite(body.mass_kg);
 }
@@ -63,7 +67,8 @@ std::vector<NamedBody> named_bodies(const SimScene& scene) {
         if (!fault.empty()) throw Error(ErrorKind::input, to.name + " can't be exported: " + fault);
         to.body = &body;
         for (const ConvexPart& part : body.parts)
-            to.parts.push_back({part_name(to.name, to.parts.size()), &part, shape_in(body, part)});
+            to.parts.push_back({to.name + "_part_" + std::to_string(to.parts.size()), &part,
+                                shape_in(body, part)});
     }
     return out;
 }

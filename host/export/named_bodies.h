@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "export/sim_scene.h"
 
 namespace topple::exports {
+
+// What a body is called in every format; place: in the scene's list of bodies.
+std::string body_name(const Body& body, std::size_t place);
 
 struct NamedPart {
     std::string name;  // object_ID_part_N

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "core/rotation.h"
 #include "core/thread_pool.h"
 #include "export/surface_colours.h"
 #include "solids/object_voxels.h"
@@ -50,13 +51,6 @@ std::vector<std::span<const solids::ObjectVoxel>> by_object(
     return out;
 }
 
-Vec3 in_input(const vdb::VoxelFrame& frame, const Vec3& v) {
-    Vec3 out{};
-    for (std::size_t a = 0; a < 3; ++a)
-        for (std::size_t d = 0; d < 3; ++d) out[d] += frame.grid_from_input[a][d] * v[a];
-    return out;
-}
-
 }  // namespace
 
 std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells& cells,
@@ -94,8 +88,8 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
         ObjectSurface& to = out[n];
         to.object = objects[n].front().object;
         auto shaded = solids::shaded(mesh, boundary.patches);
-        for (Vec3& v : shaded.vertex) to.vertex.push_back(in_input(frame, v));
-        for (Vec3& v : shaded.normal) to.normal.push_back(in_input(frame, v));
+        for (Vec3& v : shaded.vertex) to.vertex.push_back(turned_back(frame.grid_from_input, v));
+        for (Vec3& v : shaded.normal) to.normal.push_back(turned_back(frame.grid_from_input, v));
         to.triangle = std::move(shaded.triangle);
         for (const solids::Facet& f : mesh.facet) to.primitive.push_back(f.primitive);
         if (!colours) return;

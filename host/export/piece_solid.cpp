@@ -120,9 +120,9 @@ std::vector<Vec3> PieceSolids::corners_of(const Cell& cell) const {
         solids::add_corners(solids_.boundary(), cell.boundary, h, out);
         return out;
     }
-    for (unsigned c = 0; c < 8; ++c)
-        out.push_back({(cell.at[0] + int(c & 1)) * h, (cell.at[1] + int(c >> 1 & 1)) * h,
-                       (cell.at[2] + int(c >> 2)) * h});
+    const auto& [i, j, k] = cell.at;
+    for (const Voxel& c : Extents<std::int32_t>{cell.at, {i + 1, j + 1, k + 1}}.corners())
+        out.push_back({c[0] * h, c[1] * h, c[2] * h});
     return out;
 }
 

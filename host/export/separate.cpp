@@ -242,7 +242,7 @@ void separate(Body& below, Body& above) {
 template <class Bodies, class Use>
 void each_pair(Bodies& bodies, const Use& use) {
     struct Around {
-        ConvexPart box;
+        Extents<double> box;
         std::size_t body;
     };
     std::vector<Around> around;
@@ -276,20 +276,16 @@ double overlap_m(const ConvexPart& a, const ConvexPart& b) {
     return lie.gap_m < -touching_m && !edges_apart(a, b, lie.normal) ? -lie.gap_m : 0;
 }
 
-ConvexPart box_around(std::span<const ConvexPart> parts) {
-    ConvexPart box;
-    box.low.fill(physics::infinity);
-    box.high.fill(-physics::infinity);
+Extents<double> box_around(std::span<const ConvexPart> parts) {
+    Extents<double> box;
     for (const ConvexPart& part : parts) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            box.low[a] = std::min(box.low[a], part.low[a]);
-            box.high[a] = std::max(box.high[a], part.high[a]);
-        }
+        box.add(part.low);
+        box.add(part.high);
     }
     return box;
 }
 
-bool near(const ConvexPart& a, const ConvexPart& b, double distance_m) {
+bool near(const Extents<double>& a, const Extents<double>& b, double distance_m) {
     for (std::size_t n = 0; n < 3; ++n)
         if (a.low[n] > b.high[n] + distance_m || b.low[n] > a.high[n] + distance_m) return false;
     return true;

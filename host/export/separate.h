@@ -25,15 +25,15 @@ inline bool overlap(const ConvexPart& a, const ConvexPart& b) {
     return overlap_m(a, b) > 0;
 }
 
-// The box around parts, of which only `low` and `high` are set: empty where there are none.
-ConvexPart box_around(std::span<const ConvexPart> parts);
+// The box around parts.
+Extents<double> box_around(std::span<const ConvexPart> parts);
 
-// Whether the boxes around two parts come closer than that.
-bool near(const ConvexPart& a, const ConvexPart& b, double distance_m);
+// Whether two boxes come closer than that.
+bool near(const Extents<double>& a, const Extents<double>& b, double distance_m);
 
-// Whether any part of the bodies that comes so near to one is so: is(body, part).
+// Whether any part of the bodies that comes so near to a box is so: is(body, part).
 template <class Is>
-bool any_near(const std::vector<Body>& bodies, const ConvexPart& to, double distance_m,
+bool any_near(const std::vector<Body>& bodies, const Extents<double>& to, double distance_m,
               const Is& is) {
     return std::ranges::any_of(bodies, [&](const Body& body) {
         return std::ranges::any_of(body.parts, [&](const ConvexPart& part) {

@@ -30,19 +30,18 @@ struct Radii {
     double corners_m = 0, faces_m = physics::infinity;
 
     // Nothing where they differ by more than a round solid may.
-    std::optional<double> middle_m(double tolerance_m) const {
+    std::optional<double> middle_m() const {
         const double radius = (corners_m + faces_m) / 2;
         if (!(radius > 0)) return std::nullopt;
         const double off = (corners_m - faces_m) / 2;
-        if (off > std::min(tolerance_m, radius_share * radius)) return std::nullopt;
+        if (off > std::min(round_tolerance_m, radius_share * radius)) return std::nullopt;
         return radius;
     }
 };
 
-std::optional<Cylinder> cylinder_along(const ConvexPart& part, const Vec3& axis,
-                                       double tolerance_m) {
+std::optional<Cylinder> cylinder_along(const ConvexPart& part, const Vec3& axis) {
     const auto frame = frame_around(axis);
-    const Extent ends = extent_along(part, axis);
+    const Interval ends = extent_along(part, axis);
     Eigen::MatrixXd across(2, part.corner.size());
     for (std::size_t n = 0; n < part.corner.size(); ++n)
         across.col(static_cast<Eigen::Index>(n)) << dot(frame[0], part.corner[n]),
@@ -68,7 +67,7 @@ std::optional<Cylinder> cylinder_along(const ConvexPart& part, const Vec3& axis,
         else if (-beyond > box_tolerance_m)
             return std::nullopt;
     }
-    const auto radius = radii.middle_m(tolerance_m);
+    const auto radius = radii.middle_m();
     if (!radius) return std::nullopt;
     out.radius_m = *radius;
     return out;
@@ -83,6 +82,39 @@ double area_of(const ConvexPart& part, std::size_t face) {
         twice = along(twice, 1, cross(a, b));
     }
     return std::sqrt(dot(twice, twice)) / 2;
+}
+
+std::optional<Cylinder> as_cylinder(const ConvexPart& part) {
+    // The larger end; sides of a prism have four corners.
+    constexpr std::size_t least_corners = 6;
+    std::optional<std::size_t> largest;
+    for (std::size_t n = 0; n < part.outline.size(); ++n) {
+        if (part.outline[n].size() < least_corners) continue;
+        if (!largest || area_of(part, n) > area_of(part, *largest)) largest = n;
+    }
+    if (!largest) return std::nullopt;
+    Vec3 axis = part.face[*largest].normal;
+    if (axis[2] < 0) axis = opposite(axis);
+    return cylinder_along(part, axis);
+}
+
+std::optional<Sphere> as_sphere(const ConvexPart& part) {
+    Eigen::MatrixXd corners(3, part.corner.size());
+    for (std::size_t n = 0; n < part.corner.size(); ++n)
+        for (std::size_t a = 0; a < 3; ++a)
+            corners(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(n)) = part.corner[n][a];
+    const Eigen::VectorXd middle = middle_of(corners);
+    const Vec3 center{middle[0], middle[1], middle[2]};
+    Radii radii;
+    for (const Vec3& c : part.corner) {
+        const Vec3 from = minus(c, center);
+        radii.corners_m = std::max(radii.corners_m, std::sqrt(dot(from, from)));
+    }
+    for (const HalfSpace& side : part.face)
+        radii.faces_m = std::min(radii.faces_m, side.offset_m - dot(side.normal, center));
+    const auto radius = radii.middle_m();
+    if (!radius) return std::nullopt;
+    return Sphere{center, *radius};
 }
 
 // A box with its axes renumbered: the third is the most upright, the first lies along x most.
@@ -124,43 +156,10 @@ std::array<Vec3, 3> frame_around(const Vec3& axis) {
     return {cross(second, axis), second, axis};
 }
 
-std::optional<Cylinder> as_cylinder(const ConvexPart& part, double tolerance_m) {
-    // The larger end; sides of a prism have four corners.
-    constexpr std::size_t least_corners = 6;
-    std::optional<std::size_t> largest;
-    for (std::size_t n = 0; n < part.outline.size(); ++n) {
-        if (part.outline[n].size() < least_corners) continue;
-        if (!largest || area_of(part, n) > area_of(part, *largest)) largest = n;
-    }
-    if (!largest) return std::nullopt;
-    Vec3 axis = part.face[*largest].normal;
-    if (axis[2] < 0) axis = opposite(axis);
-    return cylinder_along(part, axis, tolerance_m);
-}
-
-std::optional<Sphere> as_sphere(const ConvexPart& part, double tolerance_m) {
-    Eigen::MatrixXd corners(3, part.corner.size());
-    for (std::size_t n = 0; n < part.corner.size(); ++n)
-        for (std::size_t a = 0; a < 3; ++a)
-            corners(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(n)) = part.corner[n][a];
-    const Eigen::VectorXd middle = middle_of(corners);
-    const Vec3 center{middle[0], middle[1], middle[2]};
-    Radii radii;
-    for (const Vec3& c : part.corner) {
-        const Vec3 from = minus(c, center);
-        radii.corners_m = std::max(radii.corners_m, std::sqrt(dot(from, from)));
-    }
-    for (const HalfSpace& side : part.face)
-        radii.faces_m = std::min(radii.faces_m, side.offset_m - dot(side.normal, center));
-    const auto radius = radii.middle_m(tolerance_m);
-    if (!radius) return std::nullopt;
-    return Sphere{center, *radius};
-}
-
 Shape shape_of(const ConvexPart& part) {
     if (const auto box = as_box(part, box_tolerance_m)) return turned_least(*box);
-    if (const auto cylinder = as_cylinder(part, round_tolerance_m)) return *cylinder;
-    if (const auto sphere = as_sphere(part, round_tolerance_m)) return *sphere;
+    if (const auto cylinder = as_cylinder(part)) return *cylinder;
+    if (const auto sphere = as_sphere(part)) return *sphere;
     return {};
 }
 

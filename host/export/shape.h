@@ -24,15 +24,10 @@ struct Sphere {
     double radius_m = 0;
 };
 
-// The cylinder that is the part to within `tolerance_m`, and to within a twentieth of its radius;
-// its ends are the part's own to within box_tolerance_m. Or nothing.
-std::optional<Cylinder> as_cylinder(const ConvexPart& part, double tolerance_m);
-
-// The same of a sphere.
-std::optional<Sphere> as_sphere(const ConvexPart& part, double tolerance_m);
-
-// What a part is; monostate: none of these. A box's axes are numbered so that they are turned
-// against the world's as little as may be.
+// What a part is; monostate: none of these. A round solid is the part to within round_tolerance_m,
+// and to within a twentieth of its radius; a box, and the ends of a cylinder, to within
+// box_tolerance_m. A box's axes are numbered so that they are turned against the world's as little
+// as may be.
 using Shape = std::variant<std::monostate, Box, Cylinder, Sphere>;
 Shape shape_of(const ConvexPart& part);
 inline bool is_mesh(const Shape& shape) {

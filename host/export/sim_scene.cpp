@@ -3,16 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
-#include "core/vectors.h"
+#include "core/rotation.h"
+#include "core/thread_pool.h"
 #include "export/balance.h"
 #include "export/brace.h"
 #include "export/decompose.h"
 #include "export/floor.h"
 #include "export/merge_parts.h"
+#include "export/object_surfaces.h"
 #include "export/separate.h"
 #include "export/simplify.h"
 #include "export/stand.h"
+#include "export/visual.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
 #include "topple/error.h"
@@ -20,18 +24,7 @@
 namespace topple::exports {
 namespace {
 
-using Rotation = std::array<Vec3, 3>;  // rows
-
-Rotation world_from_input(const Scene& scene) {
-    const Mat4& m = scene.manhattan_from_input;
-    return {Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}};
-}
-
-Vec3 turned(const Rotation& r, const Vec3& v) {
-    return {dot(r[0], v), dot(r[1], v), dot(r[2], v)};
-}
-
-Mat3 turned(const Rotation& r, const Mat3& inertia) {
+Mat3 turned_inertia(const Rotation& r, const Mat3& inertia) {
     Mat3 out{};
     for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b)
@@ -79,7 +72,7 @@ Bodies bodies_of(const Scene& scene, const SolidScene& solids, ThreadPool& threa
                                           std::to_string(solids.primitives()));
     const std::vector<Clump> clumps = clumps_of(scene, solids.voxel_m());
     const std::vector<Decomposed> solid = decompose(solids, clumps, threads);
-    const Rotation rotation = world_from_input(scene);
+    const Rotation rotation = rotation_of(scene.manhattan_from_input);
     Bodies made;
     std::vector<Body>& out = made.all;
     for (const Object& object : scene.objects) {
@@ -88,7 +81,7 @@ Bodies bodies_of(const Scene& scene, const SolidScene& solids, ThreadPool& threa
         body.fixed = object.grounded;
         body.mass_kg = object.mass_kg;
         body.center_m = turned(rotation, object.center_of_mass_m);
-        body.inertia_kg_m2 = turned(rotation, object.inertia_kg_m2);
+        body.inertia_kg_m2 = turned_inertia(rotation, object.inertia_kg_m2);
         out.push_back(std::move(body));
     }
     const std::size_t floor = main_floor(solid);
@@ -130,9 +123,7 @@ void add_supports(const Scene& scene, std::vector<Body>& bodies) {
     }
 }
 
-}  // namespace
-
-SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
+SimScene without_visuals(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
     SimScene out;
     out.friction = scene.friction;
     Bodies made = bodies_of(scene, solids, threads);
@@ -157,6 +148,22 @@ SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& thr
         out.floor_m = made.floor->high[2];
         out.free_place = free_place(*made.floor, out.bodies);
     }
+    return out;
+}
+
+}  // namespace
+
+SimScene sim_scene(const Scene& scene, const SolidScene& solids, bool visuals, unsigned threads) {
+    ThreadPool pool(threads);
+    if (!visuals) return without_visuals(scene, solids, pool);
+    // Surfaces need nothing of the bodies.
+    auto surfaces = std::async(threads == 1 ? std::launch::deferred : std::launch::async, [&] {
+        return object_surfaces(scene, solids.with_strays(), solids.boundary(),
+                               {solids.voxel_m(), rotation_of(scene.manhattan_from_input)}, threads,
+                               SurfaceDetail::simulated);
+    });
+    SimScene out = without_visuals(scene, solids, pool);
+    add_visuals(out, scene, surfaces.get());
     return out;
 }
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/solid_scene.h"
-#include "core/thread_pool.h"
 #include "export/body.h"
 #include "export/floor.h"
 #include "topple/scene.h"
@@ -23,7 +22,9 @@ struct SimScene {
     double gravity_m_s2 = 9.81;
 };
 
-// solids: of that scene. Throws Error(input) where both don't fit together.
-SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& threads);
+// solids: of that scene. visuals: what bodies look like, too; in colours as far as the points of
+// `scene` tell. threads: 0 for as many as the machine has. Throws Error(input) where scene and
+// solids don't fit together.
+SimScene sim_scene(const Scene& scene, const SolidScene& solids, bool visuals, unsigned threads);
 
 }  // namespace topple::exports

@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rotation.h"
+
 namespace topple {
 namespace {
 
 using Cell = std::array<std::int32_t, 3>;
 
 Cell cell_at(const vdb::VoxelFrame& frame, const ScenePoints& points, std::size_t i) {
+    const Vec3 p = turned(frame.grid_from_input, {points.x[i], points.y[i], points.z[i]});
     Cell out{};
     for (std::size_t a = 0; a < 3; ++a) {
-        const Vec3& row = frame.grid_from_input[a];
-        const double at =
-            (row[0] * points.x[i] + row[1] * points.y[i] + row[2] * points.z[i]) / frame.voxel_m;
-        out[a] = static_cast<std::int32_t>(std::clamp(std::floor(at), -1e9, 1e9));
+        out[a] = static_cast<std::int32_t>(std::clamp(std::floor(p[a] / frame.voxel_m), -1e9, 1e9));
     }
     return out;
 }
@@ -46,8 +46,7 @@ SurfaceColours::SurfaceColours(const ScenePoints& points, const SolidCells& cell
 
 std::optional<Rgb8> SurfaceColours::at(const Cell& corner, std::int32_t object) const {
     for (const std::int32_t reach : {1, 2}) {
-        std::array<unsigned, 3> sum{};
-        unsigned count = 0;
+        ColourSum seen;
         for (std::int32_t i = -reach; i < reach; ++i) {
             for (std::int32_t j = -reach; j < reach; ++j) {
                 for (std::int32_t k = -reach; k < reach; ++k) {
@@ -56,16 +55,11 @@ std::optional<Rgb8> SurfaceColours::at(const Cell& corner, std::int32_t object) 
                     if (found == report::CellTable::absent || object_[found] != object ||
                         !seen_[found].known)
                         continue;
-                    for (std::size_t c = 0; c < 3; ++c) sum[c] += seen_[found].colour[c];
-                    ++count;
+                    seen.add(seen_[found].colour);
                 }
             }
         }
-        if (count == 0) continue;
-        Rgb8 out{};
-        for (std::size_t c = 0; c < 3; ++c)
-            out[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
-        return out;
+        if (seen.count > 0) return seen.mean();
     }
     return std::nullopt;
 }

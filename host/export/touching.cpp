@@ -80,7 +80,7 @@ Touch touch_of(const ConvexPart& below, const ConvexPart& above) {
 }
 
 std::vector<Touch> touches_of(const std::vector<Body>& bodies, std::size_t first) {
-    std::vector<ConvexPart> box;
+    std::vector<Extents<double>> box;
     for (const Body& body : bodies) box.push_back(box_around(body.parts));
     std::vector<Touch> out;
     for (std::size_t a = 0; a < bodies.size(); ++a) {

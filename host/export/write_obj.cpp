@@ -24,16 +24,6 @@ void add_vector(std::string& out, const char* what, const auto& v, int digits) {
     out += '\n';
 }
 
-Rgb8 mean_colour(const Visual& visual, const std::array<std::uint32_t, 3>& triangle) {
-    Rgb8 out{};
-    for (std::size_t c = 0; c < 3; ++c) {
-        unsigned sum = 1;  // rounds
-        for (const std::uint32_t v : triangle) sum += visual.colour[v][c];
-        out[c] = static_cast<std::uint8_t>(sum / 3);
-    }
-    return out;
-}
-
 }  // namespace
 
 std::string part_obj(const ConvexPart& part, const Vec3& center_m) {
@@ -57,8 +47,11 @@ std::string visual_obj(const Visual& visual) {
     for (const Vec3& v : visual.vertex) add_vector(out, "v", v, visual_digits);
     for (const Vec3& n : visual.normal) add_vector(out, "vn", n, normal_digits);
     std::vector<std::uint32_t> texel;
-    for (const auto& triangle : visual.triangle)
-        texel.push_back(texel_of(mean_colour(visual, triangle)));
+    for (const auto& triangle : visual.triangle) {
+        ColourSum colours;
+        for (const std::uint32_t v : triangle) colours.add(visual.colour[v]);
+        texel.push_back(texel_of(colours.mean()));
+    }
     std::map<std::uint32_t, std::string> number;  // of each texel that is used
     for (const std::uint32_t each : texel) number.try_emplace(each);
     std::size_t numbered = 0;

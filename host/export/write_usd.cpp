@@ -57,17 +57,12 @@ std::string whole_numbers(const Values& values) {
 std::string usd_mesh(const std::vector<Vec3>& points, int digits,
                      const std::vector<std::size_t>& counts,
                      const std::vector<std::uint32_t>& corners) {
-    Vec3 low = points.at(0), high = low;
-    for (const Vec3& p : points) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            low[a] = std::min(low[a], p[a]);
-            high[a] = std::max(high[a], p[a]);
-        }
-    }
+    Extents<double> box;
+    for (const Vec3& p : points) box.add(p);
     return joined(
         "            uniform token subdivisionScheme = \"none\"\n"
         "            float3[] extent = ",
-        fixed_tuples(std::array{low, high}, digits),
+        fixed_tuples(std::array{box.low, box.high}, digits),
         "\n            point3f[] points = ", fixed_tuples(points, digits),
         "\n            int[] faceVertexCounts = ", whole_numbers(counts),
         "\n            int[] faceVertexIndices = ", whole_numbers(corners), "\n");

@@ -69,20 +69,10 @@ std::optional<bool> ObjectVerdict::agrees() const {
     return stays() == (says == Says::stable);
 }
 
-Verdict::Count Verdict::count() const {
-    Count out;
-    for (const Says says : all_says) {
-        const Count of = count(says);
-        out.free += of.free;
-        out.stay += of.stay;
-    }
-    return out;
-}
-
-Verdict::Count Verdict::count(Says says) const {
+Verdict::Count Verdict::count(std::optional<Says> says) const {
     Count out;
     for (const ObjectVerdict& o : objects) {
-        if (!o.motion || o.says != says) continue;
+        if (!o.motion || o.says != says.value_or(o.says)) continue;
         ++out.free;
         out.stay += o.stays();
     }

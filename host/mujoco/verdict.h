@@ -38,8 +38,8 @@ struct Verdict {
     struct Count {
         std::uint64_t free = 0, stay = 0;
     };
-    Count count() const;
-    Count count(Says says) const;
+    // Of what topple says so of, or of all.
+    Count count(std::optional<Says> says = {}) const;
 };
 
 // scene, exported, run: of the same export.

@@ -3,14 +3,12 @@
 #include <string>
 #include <system_error>
 
-#include "export/bodies_json.h"
 #include "export/export_folder.h"
 #include "export/formats.h"
-#include "export/make_sim_scene.h"
-#include "export/names.h"
+#include "export/named_bodies.h"
 #include "export/separate.h"
 #include "export/sim_scene.h"
-#include "export/summary_notes.h"
+#include "export/summary.h"
 #include "io/output_folder.h"
 #include "io/replace_file.h"
 #include "io/text.h"
@@ -77,7 +75,7 @@ ExportSummary write_formats(const Scene& scene, const SolidScene& solids,
                             const ExportOptions& options) {
     check_apart_from(scene.source, options);
     const exports::SimScene made =
-        make_sim_scene(scene, solids, {.visuals = options.visuals, .threads = options.threads});
+        exports::sim_scene(scene, solids, options.visuals, options.threads);
     stop_where_cancelled(options);
     const ExportSummary summary = summary_of(made);
     const std::string bodies = exports::bodies_json(summary);

@@ -4,33 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "core/vectors.h"
 
 namespace topple::report {
-namespace {
-
-// The nearest upper corner belongs to walls and a ceiling that are looked through.
-std::vector<Vec3> corners_of(const Vec3& low, const Vec3& high) {
-    std::vector<Vec3> corners;
-    for (unsigned n = 0; n < 8; ++n) {
-        if (n == 4) continue;
-        corners.push_back(
-            {n & 1 ? high[0] : low[0], n & 2 ? high[1] : low[1], n & 4 ? high[2] : low[2]});
-    }
-    return corners;
-}
-
-}  // namespace
-
 std::array<double, 3> Camera::project(const Vec3& p) const {
     const Vec3 d = along(p, -1, eye);
     const double depth = dot(d, ahead);
     return {x0 + focal * dot(d, right) / depth, y0 - focal * dot(d, up) / depth, depth};
 }
 
-Camera camera_on(const Vec3& low, const Vec3& high, int width, int height,
+Camera camera_on(const Extents<double>& box, int width, int height,
                  const std::array<double, 4>& margin) {
     Camera camera;
     constexpr Vec3 ahead{0.55, 0.75, -0.62};
@@ -42,11 +26,14 @@ Camera camera_on(const Vec3& low, const Vec3& high, int width, int height,
     const double wide = width - margin[0] - margin[1], tall = height - margin[2] - margin[3];
     camera.x0 = margin[0] + wide / 2;
     camera.y0 = margin[2] + tall / 2;
-    const auto corners = corners_of(low, high);
+    auto corners = box.corners();
+    // The nearest upper corner belongs to walls and a ceiling that are looked through.
+    corners[4] = corners[0];
     Vec3 target{};
-    for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = (low[axis] + high[axis]) / 2;
-    const double reach =
-        std::max(std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        target[axis] = (box.low[axis] + box.high[axis]) / 2;
+    const Vec3 size = minus(box.high, box.low);
+    const double reach = std::max(std::hypot(size[0], size[1], size[2]), 1e-3);
     double distance = reach;
     for (int round = 0; round < 60; ++round) {
         camera.eye = along(target, -distance, camera.ahead);

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/extents.h"
 #include "topple/input.h"
 
 namespace topple::report {
@@ -19,7 +20,7 @@ struct Camera {
 
 // As near as the box fits into the picture but for a margin, in pixels, on each side: left, right,
 // top, bottom.
-Camera camera_on(const Vec3& low, const Vec3& high, int width, int height,
+Camera camera_on(const Extents<double>& box, int width, int height,
                  const std::array<double, 4>& margin);
 
 }  // namespace topple::report

@@ -104,15 +104,6 @@ void Canvas::disc(double x, double y, double radius, const Colour& fill) {
     cairo_fill(page_->context);
 }
 
-void Canvas::target(double x, double y, double radius, const Colour& colour) {
-    page_->use(colour);
-    cairo_set_line_width(page_->context, 1.5);
-    cairo_arc(page_->context, x, y, radius, 0, 2 * std::numbers::pi);
-    cairo_stroke(page_->context);
-    line(x - 1.6 * radius, y, x + 1.6 * radius, y, colour, 1.5);
-    line(x, y - 1.6 * radius, x, y + 1.6 * radius, colour, 1.5);
-}
-
 void Canvas::text(double x, double y, const std::string& text, Align align, const Font& font) {
     cairo_t* const c = page_->context;
     page_->use(font.colour);

@@ -44,8 +44,6 @@ class Canvas {
     void rectangle(double x, double y, double width, double height, const Colour& fill);
     void line(double x0, double y0, double x1, double y1, const Colour& colour, double width = 1);
     void disc(double x, double y, double radius, const Colour& fill);
-    // A ring with a cross: a reference among discs.
-    void target(double x, double y, double radius, const Colour& colour);
     // `y` is the base line.
     void text(double x, double y, const std::string& text, Align align, const Font& font = {});
     double text_width(const std::string& text, const Font& font) const;

@@ -1,21 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "report/cell_colours.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace topple::report {
-
-void CellColours::Sum::add(const Rgb8& colour) {
-    for (std::size_t c = 0; c < 3; ++c) channel[c] += colour[c];
-    ++count;
-}
-
-Rgb8 CellColours::Sum::mean() const {
-    Rgb8 out{};
-    for (std::size_t c = 0; c < 3; ++c)
-        out[c] = static_cast<std::uint8_t>((channel[c] + count / 2) / count);
-    return out;
-}
 
 void CellColours::add(std::uint32_t cell, const Rgb8& colour) {
     if (colour != Rgb8{0, 0, 0}) sums_[cell].add(colour);
@@ -32,17 +20,15 @@ std::vector<CellColours::Known> CellColours::spread(
         ring.push_back(i);
     }
     // All of a ring read the rings before: the result does not depend on the order of the cells.
-    std::vector<Sum> around(out.size());
+    std::vector<ColourSum> around(out.size());
     for (std::vector<std::uint32_t> next; !ring.empty(); std::swap(ring, next)) {
         next.clear();
         for (const std::uint32_t i : ring) {
-            for (const auto& near : beside(index[i])) {
-                const std::uint32_t other = table.find(near);
-                if (other == CellTable::absent || body[other] != body[i] || out[other].known)
-                    continue;
+            each_beside(index[i], table, [&](std::uint32_t other) {
+                if (body[other] != body[i] || out[other].known) return;
                 if (around[other].count == 0) next.push_back(other);
                 around[other].add(out[i].colour);
-            }
+            });
         }
         for (const std::uint32_t i : next) out[i] = {around[i].mean(), true};
     }

@@ -30,13 +30,7 @@ class CellColours {
                               const std::vector<std::int32_t>& body) const;
 
   private:
-    struct Sum {
-        std::array<std::uint64_t, 3> channel{};
-        std::uint64_t count = 0;
-        void add(const Rgb8& colour);
-        Rgb8 mean() const;
-    };
-    std::vector<Sum> sums_;
+    std::vector<ColourSum> sums_;
 };
 
 }  // namespace topple::report

@@ -107,12 +107,11 @@ std::vector<std::uint32_t> spread_normals(std::vector<Cell>& cells, const CellTa
         // All of a ring read the ring before: the result does not depend on the order of the cells.
         std::vector<std::array<float, 3>> found(missing.size());
         for (std::size_t k = 0; k < missing.size(); ++k) {
-            for (const auto& index : beside(cells[missing[k]].index)) {
-                const auto other = table.find(index);
-                if (other == CellTable::absent || !cells[other].background) continue;
+            each_beside(cells[missing[k]].index, table, [&](std::uint32_t other) {
+                if (!cells[other].background) return;
                 for (std::size_t axis = 0; axis < 3; ++axis)
                     found[k][axis] += cells[other].normal[axis];
-            }
+            });
         }
         std::vector<std::uint32_t> still;
         for (std::size_t k = 0; k < missing.size(); ++k) {

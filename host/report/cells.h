@@ -45,6 +45,16 @@ class CellTable {
 // The six cells that share a face with one, in the order of Cell::exposed.
 std::array<std::array<std::int32_t, 3>, 6> beside(const std::array<std::int32_t, 3>& index);
 
+// Calls call(number) for each of them that there is, by what the table has of it.
+template <class Call>
+void each_beside(const std::array<std::int32_t, 3>& index, const CellTable& table,
+                 const Call& call) {
+    for (const auto& near : beside(index)) {
+        const std::uint32_t other = table.find(near);
+        if (other != CellTable::absent) call(other);
+    }
+}
+
 // Marks which faces of each cell are exposed; returns how many cells have one.
 std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table);
 

@@ -5,9 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include "core/vectors.h"
+#include "core/rotation.h"
 #include "report/drawing_parts.h"
-#include "report/view_frame.h"
 
 namespace topple::report {
 namespace {
@@ -132,7 +131,7 @@ class SphereMap {
         }
     }
 
-    std::array<Vec3, 3> room_from_input_;
+    Rotation room_from_input_;
     const Landscape& l_;
     double weight_N_;
     Drawing out_{"Poses: energy of leaning each way", width, 2 * radius + 92};

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/extents.h"
 #include "report/cells.h"
 #include "report/view_frame.h"
 
@@ -22,15 +23,15 @@ std::pair<float, float> strength(const Arrow& a) {
 
 }  // namespace
 
-Arrows pack_arrows(const FieldSamples& field, const std::array<Vec3, 3>& view_from_input,
-                   double edge_m, std::size_t most) {
+Arrows pack_arrows(const FieldSamples& field, const Rotation& view_from_input, double edge_m,
+                   std::size_t most) {
     Arrows out;
     out.total = field.x.size();
-    Extent box;
+    Extents<double> box;
     std::vector<Arrow> all;
     for (std::size_t i = 0; i < field.x.size(); ++i) {
-        const Vec3 p = turned(view_from_input, field.x[i], field.y[i], field.z[i]);
-        const Vec3 v = turned(view_from_input, field.vx[i], field.vy[i], field.vz[i]);
+        const Vec3 p = turned(view_from_input, {field.x[i], field.y[i], field.z[i]});
+        const Vec3 v = turned(view_from_input, {field.vx[i], field.vy[i], field.vz[i]});
         if (!finite(p) || !finite(v)) continue;
         box.add(p);
         const float density = std::isfinite(field.density[i]) ? field.density[i] : 0.0f;

@@ -10,14 +10,6 @@ namespace {
 
 constexpr std::uint8_t deep = 4;  // cells
 
-template <class Call>
-void each_beside(const Cell& cell, const CellTable& table, const Call& call) {
-    for (const auto& index : beside(cell.index)) {
-        const std::uint32_t other = table.find(index);
-        if (other != CellTable::absent) call(other);
-    }
-}
-
 // How many cells of its own group lie between each cell and those of others; `deep` for all that
 // have more.
 std::vector<std::uint8_t> depths(const std::vector<Cell>& cells, const CellTable& table) {
@@ -25,7 +17,7 @@ std::vector<std::uint8_t> depths(const std::vector<Cell>& cells, const CellTable
     std::vector<std::uint32_t> ring, next;
     for (std::uint32_t i = 0; i < cells.size(); ++i) {
         bool border = false;
-        each_beside(cells[i], table,
+        each_beside(cells[i].index, table,
                     [&](std::uint32_t other) { border |= cells[other].group != cells[i].group; });
         if (!border) continue;
         depth[i] = 0;
@@ -34,7 +26,7 @@ std::vector<std::uint8_t> depths(const std::vector<Cell>& cells, const CellTable
     for (std::uint8_t at = 1; at < deep; ++at, std::swap(ring, next)) {
         next.clear();
         for (const std::uint32_t i : ring) {
-            each_beside(cells[i], table, [&](std::uint32_t other) {
+            each_beside(cells[i].index, table, [&](std::uint32_t other) {
                 if (cells[other].group != cells[i].group || depth[other] != deep) return;
                 depth[other] = at;
                 next.push_back(other);

@@ -17,6 +17,8 @@
 #include "core/thread_pool.h"
 #include "io/file_writer.h"
 #include "io/palette.h"
+#include "io/replace_file.h"
+#include "io/text.h"
 #include "report/drawing.h"
 #include "report/embedded.h"
 #include "report/page_parts.h"
@@ -356,7 +358,6 @@ Report::Report(const Scene& scene, bool with_surfaces, ReportWords words)
     json["below_hazard"] = below_hazard_json(scene);
     json["title"] = parts_->title;
     json["made"] = today();
-    if (words.command.empty()) words.command = {"topple", "parse", scene.source, "-o", "OUT"};
     json["command"] = std::move(words.command);
     make_printable(json["command"]);
 }
@@ -384,9 +385,22 @@ void Report::write(const std::filesystem::path& file, std::span<const ObjectSurf
     writer.close();
 }
 
-void write_report(const std::filesystem::path& file, const Scene& scene,
-                  std::span<const ObjectSurface> surfaces, ReportWords words) {
-    Report(scene, !surfaces.empty(), std::move(words)).write(file, surfaces, 0);
+bool add_verification(const std::filesystem::path& report, const std::string& json) {
+    constexpr std::string_view begin = "<script type=\"application/json\" id=\"verified\">";
+    constexpr std::string_view end = "</script>";
+    const io::FileBytes bytes =
+        io::read_file(io::FileName::beside(report, report.filename()), std::uint64_t{256} << 20);
+    const std::string_view page = bytes.text();
+    // In what is embedded before it no < begins anything: the first is the page's own.
+    const std::size_t at = page.find(begin);
+    if (at == page.npos) return false;
+    const std::size_t from = at + begin.size(), to = page.find(end, from);
+    if (to == page.npos) return false;
+    std::string out;
+    out.reserve(page.size() + json.size());
+    out.append(page.substr(0, from)).append(script_safe(json)).append(page.substr(to));
+    io::replace_file(report, out);
+    return true;
 }
 
 }  // namespace topple::report

@@ -14,13 +14,9 @@ namespace {
 
 constexpr int fine = 2;  // pixels are means of fine x fine
 
-struct Box {
-    Vec3 low{-0.5, -0.5, -0.5}, high{0.5, 0.5, 0.5};
-};
-
 // The 2nd and 98th hundredths of the voxels' places.
-Box box_of(const PackedView& view) {
-    Box box;
+Extents<double> box_of(const PackedView& view) {
+    Extents<double> box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
     if (view.voxels.cell.empty()) return box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::vector<std::uint16_t> steps;
@@ -60,11 +56,10 @@ SceneImage::SceneImage(const Scene& scene, const PackedView& view, int width, in
     for (const auto& object : scene.objects) {
         if (object.grounded) grounded_.insert(object.id);
     }
-    const Box box = box_of(view);
-    reach_m_ = std::max(
-        std::hypot(box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]),
-        0.05);
-    camera_ = camera_on(box.low, box.high, width, height, margin);
+    const Extents<double> box = box_of(view);
+    const Vec3 size = minus(box.high, box.low);
+    reach_m_ = std::max(std::hypot(size[0], size[1], size[2]), 0.05);
+    camera_ = camera_on(box, width, height, margin);
     fine_camera_ = camera_;
     fine_camera_.focal *= fine;
     fine_camera_.x0 *= fine;

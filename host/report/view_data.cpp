@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "core/extents.h"
 #include "core/scene_bounds.h"
-#include "core/vectors.h"
 #include "report/cell_colours.h"
 #include "report/cells.h"
 #include "report/field_arrows.h"
@@ -93,7 +93,7 @@ class ViewPacker::Work {
     }
     template <class Cloud>
     Vec3 place(const Cloud& cloud, std::size_t i) const {
-        return turned(view_.view_from_input, cloud.x[i], cloud.y[i], cloud.z[i]);
+        return turned(view_.view_from_input, {cloud.x[i], cloud.y[i], cloud.z[i]});
     }
 
     // Whether a place is drawn: strays far from all others would leave the rest no steps.
@@ -245,7 +245,8 @@ class ViewPacker::Work {
             if (!finite(p)) continue;
             const auto found = table.find(index_of(p, edge));
             if (found == CellTable::absent) continue;
-            const auto n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
+            const auto n =
+                turned(view_.view_from_input, {points.nx[i], points.ny[i], points.nz[i]});
             if (!finite(n)) continue;
             for (std::size_t axis = 0; axis < 3; ++axis)
                 cells[found].normal[axis] += static_cast<float>(n[axis]);
@@ -301,24 +302,21 @@ class ViewPacker::Work {
     // In place of the voxels, where it is not too large.
     void pack_surfaces(std::span<const ObjectSurface> surfaces, ThreadPool& pool) {
         if (surfaces.empty() || cells_.empty()) return;
-        SurfacePacker packer(view_.coloured);
-        for (const ObjectSurface& surface : surfaces) {
-            packer.add(surface, [&](std::int32_t primitive) {
-                return groups_.of(primitive, surface.object);
-            });
-        }
-        if (packer.bytes() > limits_.surface_bytes) return;
-        view_.surface = packer.take(std::bind_front(&Work::vertex_of, this), pool);
+        const auto group_of = [&](const ObjectSurface& surface, std::int32_t primitive) {
+            return groups_.of(primitive, surface.object);
+        };
+        view_.surface = report::pack_surfaces(
+            surfaces, {view_.coloured, group_of, std::bind_front(&Work::vertex_of, this)},
+            limits_.surface_bytes, pool);
+        if (view_.surface.index.empty()) return;
         const std::size_t total = view_.voxels.total;
         view_.voxels = {};
         view_.voxels.total = total;
     }
 
     Record vertex_of(const ObjectSurface& surface, std::size_t v, std::uint16_t group) const {
-        const auto& at = surface.vertex[v];
-        const auto& normal = surface.normal[v];
-        const Vec3 p = turned(view_.view_from_input, at[0], at[1], at[2]),
-                   n = turned(view_.view_from_input, normal[0], normal[1], normal[2]);
+        const Vec3 p = turned(view_.view_from_input, surface.vertex[v]),
+                   n = turned(view_.view_from_input, surface.normal[v]);
         Record out;
         out.cell = quantised(p, group);
         const bool background = is_background(surface.object);
@@ -380,7 +378,7 @@ class ViewPacker::Work {
             Record record{quantised(p, groups_.of(points.primitive[i], points.object[i]))};
             Vec3 n{};
             if (!points.nx.empty())
-                n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
+                n = turned(view_.view_from_input, {points.nx[i], points.ny[i], points.nz[i]});
             if (!finite(n)) n = {};
             if (points.nx.empty() && is_background(points.object[i])) n = background_normal(p);
             record.aux = aux(n, 0);
@@ -408,7 +406,7 @@ class ViewPacker::Work {
     std::set<std::int32_t> grounded_;
     std::map<std::int32_t, std::uint64_t> voxels_of_object_;
     Bounds<float> bounds_;
-    Extent solid_box_;
+    Extents<double> solid_box_;
     double lattice_shift_ = 0.5;
     std::vector<Cell> cells_;                  // what is drawn, cubes of view_.cube_m
     CellTable table_;                          // finds them

@@ -69,7 +69,7 @@ struct Arrows {
 };
 
 struct PackedView {
-    std::array<Vec3, 3> view_from_input;
+    Rotation view_from_input;
     Vec3 origin_m{}, step_m{};
     double cube_m =
         0;  // edge of the cubes that are drawn; larger than a voxel where those are merged

@@ -50,8 +50,7 @@ double busy(std::vector<double> values) {
 
 }  // namespace
 
-PackedWalks pack_walks(const Walks& walks, const std::array<Vec3, 3>& view_from_input,
-                       std::size_t cells) {
+PackedWalks pack_walks(const Walks& walks, const Rotation& view_from_input, std::size_t cells) {
     PackedWalks out;
     if (!fits(walks)) return out;
     std::int64_t merge = 1;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/rotation.h"
 #include "topple/scene.h"
 
 namespace topple::report {
@@ -23,7 +24,6 @@ struct PackedWalks {
 
 // Merges cells by squares until at most `cells` are left. Never fails; where the walks' sizes do
 // not fit together, or a place is not finite, there are none.
-PackedWalks pack_walks(const Walks& walks, const std::array<Vec3, 3>& view_from_input,
-                       std::size_t cells);
+PackedWalks pack_walks(const Walks& walks, const Rotation& view_from_input, std::size_t cells);
 
 }  // namespace topple::report

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "device/device.h"
-#include "export/make_sim_scene.h"
 #include "export/writers.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
@@ -75,7 +74,7 @@ SimScene parsed_scene(const std::filesystem::path& folder) {
     options.device = device::open_device("native");
     options.disturbances.clear();
     const ParseResult result = parse(folder / "scan.xyz", options);
-    return make_sim_scene(result.scene, *result.solids, {});
+    return sim_scene(result.scene, *result.solids, true, 0);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/vectors.h"
 #include "export/shape.h"
 #include "testing.h"
 
@@ -16,17 +17,8 @@ inline Vec3 placed(const std::array<double, 4>& q, const Vec3& at, const Vec3& p
             at[2] + p[2] + w * t[2] + x * t[1] - y * t[0]};
 }
 
-// The extents of a shape along the axes, half of each, are those of the part. Boxes have corners;
-// of others the half extents are known.
-struct Bounds {
-    Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
-
-    void add(const Vec3& p) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            low[a] = std::min(low[a], p[a]);
-            high[a] = std::max(high[a], p[a]);
-        }
-    }
+// The extents of a shape along the axes, to be those of the part.
+struct Bounds : Extents<double> {
     void expect(const ConvexPart& part, double within_m) const {
         for (std::size_t a = 0; a < 3; ++a) {
             EXPECT_NEAR(low[a], part.low[a], within_m);
@@ -37,10 +29,8 @@ struct Bounds {
 
 inline Bounds bounds_of_box(const std::array<double, 4>& q, const Vec3& at, const Vec3& half) {
     Bounds out;
-    for (unsigned n = 0; n < 8; ++n)
-        out.add(placed(q, at,
-                       {(n & 1) != 0 ? half[0] : -half[0], (n & 2) != 0 ? half[1] : -half[1],
-                        (n & 4) != 0 ? half[2] : -half[2]}));
+    for (const Vec3& corner : Extents<double>{opposite(half), half}.corners())
+        out.add(placed(q, at, corner));
     return out;
 }
 

@@ -7,8 +7,8 @@
 
 #include "child/confine.h"
 #include "child/process.h"
+#include "mujoco/main/settle.h"
 #include "mujoco/message.h"
-#include "mujoco/running.h"
 #include "topple/version.h"
 
 using namespace topple;
@@ -32,10 +32,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     child::confine({{std::filesystem::path(task[3]).parent_path()}, {}});
-    mujoco::Running::set_on_error(tell_error);
-    mujoco::Running running(task[3]);
-    if (!running.trouble().empty()) tell_error(running.trouble().c_str());
-    mujoco::write_settled(running.settle(std::strtod(task[1].c_str(), nullptr),
-                                         std::strtod(task[2].c_str(), nullptr)));
+    mujoco::write_settled(mujoco::settle(task[3], std::strtod(task[1].c_str(), nullptr),
+                                         std::strtod(task[2].c_str(), nullptr), tell_error));
     std::_Exit(0);
 }

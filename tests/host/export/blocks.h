@@ -10,11 +10,7 @@
 namespace topple::exports::test {
 
 inline ConvexPart block(const Vec3& low, const Vec3& high) {
-    std::vector<Vec3> corners;
-    for (unsigned c = 0; c < 8; ++c)
-        corners.push_back({(c & 1) != 0 ? high[0] : low[0], (c & 2) != 0 ? high[1] : low[1],
-                           (c & 4) != 0 ? high[2] : low[2]});
-    ConvexPart out = *hull_part(corners);
+    ConvexPart out = *hull_part(Extents<double>{low, high}.corners());
     // Solid throughout: points on a lattice.
     constexpr int count = 5;
     for (int i = 0; i < count; ++i)

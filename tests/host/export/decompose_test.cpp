@@ -160,7 +160,7 @@ TEST(ConvexPart, OfABoxHasItsVolumeFacesAndExtent) {
     EXPECT_NEAR(part.volume_m3, 6, 1e-12);
     EXPECT_EQ(part.corner.size(), 8u);
     EXPECT_EQ(part.face.size(), 6u);
-    const Extent along = extent_along(part, {0, 0, 1});
+    const Interval along = extent_along(part, {0, 0, 1});
     EXPECT_EQ(along.low, 3);
     EXPECT_EQ(along.high, 6);
 }

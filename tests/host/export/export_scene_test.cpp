@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/json.h"
-#include "export/bodies_json.h"
 #include "export/formats.h"
-#include "export/summary_notes.h"
+#include "export/summary.h"
 #include "host/export/blocks.h"
 #include "host/io/files.h"
 #include "result/scene_json.h"

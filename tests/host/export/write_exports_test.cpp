@@ -2,6 +2,7 @@
 #include "core/checksum.h"
 #include "export/colour_texture.h"
 #include "export/export_folder.h"
+#include "export/formats.h"
 #include "export/text.h"
 #include "export/write_obj.h"
 #include "export/writers.h"
@@ -17,18 +18,13 @@ namespace fs = std::filesystem;
 
 class WriteExports : public topple::test::Files {
   protected:
-    struct Format {
-        std::string top, beside;
-        std::function<void(const fs::path&, const SimScene&)> write;
-    };
-    const std::vector<Format> formats{
-        {"scene.xml", "scene_mjcf", write_mjcf},
-        {"scene.urdf", "scene_urdf", write_urdf},
-        {"scene.sdf", "scene_sdf", write_sdf},
-        {"scene.usda", "", [](const fs::path& folder, const SimScene& scene) {
-             write_usd(folder / "scene.usda", scene);
-         }}};
-
+    // What a format's writer takes to write into a folder.
+    fs::path in(const std::string& folder, const Format& format) const {
+        return format.file ? path(folder) : path(folder) / "scene.usda";
+    }
+    void write_all(const SimScene& scene) const {
+        for (const Format& format : formats()) format.write(in("out", format), scene);
+    }
     std::map<std::string, std::string> files_in(const fs::path& folder) const {
         std::map<std::string, std::string> out;
         for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -40,64 +36,63 @@ class WriteExports : public topple::test::Files {
 
 TEST_F(WriteExports, AllFormatsShareAFolderAndAreTheSameAgain) {
     const SimScene scene = shapes_scene();
-    for (const Format& format : formats) format.write(path("out"), scene);
+    write_all(scene);
     const auto first = files_in(path("out"));
     EXPECT_TRUE(first.contains("scene_urdf/object_1.urdf"));
     EXPECT_TRUE(first.contains("scene_sdf/object_5_part_0.obj"));  // the ramp
     EXPECT_FALSE(first.contains("scene_sdf/object_1_part_0.obj"));
     EXPECT_TRUE(first.contains("scene_mjcf/object_1.obj"));
     EXPECT_TRUE(first.contains("scene_mjcf/colours.png"));
-    for (const Format& format : formats) format.write(path("out"), scene);
+    write_all(scene);
     EXPECT_EQ(files_in(path("out")), first);
 }
 
 TEST_F(WriteExports, AnEarlierOneIsReplacedAsAWhole) {
     SimScene scene = shapes_scene();
-    for (const Format& format : formats) format.write(path("out"), scene);
+    write_all(scene);
     scene.bodies.resize(2);
     scene.bodies[1].visual = {};
-    for (const Format& format : formats) format.write(path("out"), scene);
+    write_all(scene);
     EXPECT_FALSE(fs::exists(path("out/scene_urdf/object_5_part_0.obj")));
     EXPECT_FALSE(fs::exists(path("out/scene_mjcf/object_1.obj")));
     scene.bodies[0].visual = {};
-    for (const Format& format : formats) format.write(path("out"), scene);
+    write_all(scene);
     EXPECT_FALSE(fs::exists(path("out/scene_mjcf")));
     EXPECT_FALSE(fs::exists(path("out/scene_sdf")));
 }
 
 TEST_F(WriteExports, FilesOfOthersStay) {
     const SimScene scene = shapes_scene();
-    for (const Format& format : formats) {
-        const std::string other = "other/" + format.top;
-        write(other, "by someone");
-        EXPECT_THROW(format.write(path("other"), scene), Error);
-        EXPECT_EQ(topple::test::bytes_of_file(path(other)), "by someone");
-        fs::remove_all(path("other"));
-        if (format.beside.empty()) continue;
-        const std::string within = "out/" + format.beside + "/notes.txt";
+    for (const Format& format : formats()) {
+        const fs::path file = scene_file(format, in("other", format));
+        write("other/" + file.filename().string(), "by someone");
+        EXPECT_THROW(format.write(in("other", format), scene), Error);
+        EXPECT_EQ(topple::test::bytes_of_file(file), "by someone");
+        if (!format.file) continue;
+        const std::string within = "out/" + name_beside(format.name) + "/notes.txt";
         format.write(path("out"), scene);
         write(within, "by someone");
         topple::test::expect_input_error([&] { format.write(path("out"), scene); }, {"notes.txt"});
-        EXPECT_TRUE(fs::exists(path("out/" + format.top)));
+        EXPECT_TRUE(fs::exists(path("out") / format.file));
         EXPECT_EQ(topple::test::bytes_of_file(path(within)), "by someone");
     }
 }
 
 TEST_F(WriteExports, WhatFailsLeavesTheEarlierOneAndNothingElse) {
     SimScene scene = shapes_scene();
-    for (const Format& format : formats) format.write(path("out"), scene);
+    write_all(scene);
     const auto before = files_in(path("out"));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double mass : {0.0, nan}) {
         scene.bodies[1].mass_kg = mass;
-        for (const Format& format : formats)
-            topple::test::expect_input_error([&] { format.write(path("out"), scene); },
+        for (const Format& format : formats())
+            topple::test::expect_input_error([&] { format.write(in("out", format), scene); },
                                              {"object_1", "mass"});
     }
     scene = shapes_scene();
     scene.bodies[2].inertia_kg_m2[4] = -1;
-    for (const Format& format : formats)
-        topple::test::expect_input_error([&] { format.write(path("out"), scene); },
+    for (const Format& format : formats())
+        topple::test::expect_input_error([&] { format.write(in("out", format), scene); },
                                          {"object_2", "inertia"});
     EXPECT_EQ(files_in(path("out")), before);
 }

@@ -13,19 +13,19 @@ using Json = nlohmann::json;
 
 class Compare : public test::InBrowser {
   protected:
-    // A report of the room, and its scene.json as the text of a script.
-    std::string write(const Scene& scene) {
-        write_report(folder_ / "report.html", scene);
-        io::write_scene_json(folder_ / "scene.json", scene);
-        std::string text = Json(test::bytes_of_file(folder_ / "scene.json")).dump();
+    // A file as the text of a script.
+    std::string literal(const char* file) const {
+        std::string text = Json(test::bytes_of_file(folder_ / file)).dump();
         for (auto at = text.find("</"); at != std::string::npos; at = text.find("</"))
             text.replace(at, 2, "<\\/");
         return text;
     }
     // What became of each object, once `change` has made another parse of it.
-    Opened compared(const std::string& json, const std::string& change) {
+    Opened compared(const Scene& scene, const std::string& change) {
+        write_report(folder_ / "report.html", scene);
+        io::write_scene_json(folder_ / "scene.json", scene);
         return open(folder_ / "report.html",
-                    "const other = JSON.parse(" + json + ");" + change + R"(
+                    "const other = JSON.parse(" + literal("scene.json") + ");" + change + R"(
             document.getElementById('compare-order').value = 'after';
             await toppleCompare.read('other.json', JSON.stringify(other));
             out.rows = [...document.querySelectorAll('#compare-result tbody tr')]
@@ -59,13 +59,6 @@ TEST_F(Compare, tells_what_became_safer) {
     for (std::size_t id = 0; id < 6; ++id) before.objects[id].id = std::int32_t(id);
     io::write_scene_json(folder_ / "before.json", before);
     write_report(folder_ / "before.html", before);
-    // As the text of a script.
-    const auto literal = [&](const char* file) {
-        std::string text = Json(test::bytes_of_file(folder_ / file)).dump();
-        for (auto at = text.find("</"); at != std::string::npos; at = text.find("</"))
-            text.replace(at, 2, "<\\/");
-        return text;
-    };
     const auto page = open(folder_ / "report.html", "const json = " + literal("before.json") +
                                                         ", html = " + literal("before.html") + R"(;
         const text = selector => document.querySelector(`#compare-result ${selector}`).textContent;
@@ -102,7 +95,7 @@ TEST_F(Compare, measures_moves_by_boxes) {
     scene.voxel_size_m = 0.02;
     // The centre of mass of 1 rose, 2 was carried and is half as heavy, 3 was pushed, of 4 more was
     // seen to one side, and 5, elsewhere, is another thing: half as high.
-    const auto page = compared(write(scene), R"(
+    const auto page = compared(scene, R"(
         other.source = 'later.ply';
         const [, table, cup, monitor, shelf, ball] = other.objects;
         table.center_of_mass_m[2] += 0.07;
@@ -129,7 +122,7 @@ TEST_F(Compare, tells_of_what_the_missing_may_be_part) {
     Scene scene = test::SyntheticScene(0.1).make();
     for (Object& object : scene.objects) object.size_m = {0.3, 0.3, 0.5};
     scene.voxel_size_m = 0.02;
-    const auto page = compared(write(scene), R"(
+    const auto page = compared(scene, R"(
         other.source = 'later.ply';
         const [, table, cup, monitor, shelf, ball] = other.objects, part = object => other.primitives.find(each => each.id === object.primitives[0]);
         part(cup).object = 1;
@@ -150,7 +143,7 @@ TEST_F(Compare, tells_of_what_the_missing_may_be_part) {
 TEST_F(Compare, tells_errors_that_are_too_large_from_no_change) {
     Scene scene = test::SyntheticScene(0.2).make();
     for (Object& object : scene.objects) object.size_m = {0.4, 0.3, 0.5};
-    const auto page = compared(write(scene), R"(
+    const auto page = compared(scene, R"(
         other.source = 'later.ply';
         const [, , , monitor, shelf] = other.objects;
         monitor.risk_J.human *= 1.1;
@@ -166,7 +159,7 @@ TEST_F(Compare, follows_the_parts_of_a_scan_that_was_corrected) {
     const Scene scene = test::SyntheticScene(0.1).make();
     // The cup is one with the table; the shelf is fixed, and with it the monitor; the ball is not
     // there, and the parts after it have other numbers. Of the table a leg is apart.
-    const auto page = compared(write(scene), R"(
+    const auto page = compared(scene, R"(
         const {objects, primitives} = other, spot = id => objects[id].box_middle_m, [building, table, cup, monitor, shelf, ball] = objects;
         other.corrections = [
             {do: 'one_thing', held: true, at_m: [spot(1), spot(2)]}, {do: 'fixed', held: true, at_m: [spot(4)]},

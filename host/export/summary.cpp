@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "export/summary_notes.h"
+#include "export/summary.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
+
+#include "io/json_values.h"
 
 namespace topple::exports {
 namespace {
@@ -66,6 +68,32 @@ void add_cuts(const ExportSummary& summary, std::vector<std::string>& notes) {
     notes.push_back(std::move(note));
 }
 
+// null for a vector that is not finite.
+OrderedJson vector_or_null(const Vec3& v) {
+    for (const double x : v)
+        if (!std::isfinite(x)) return nullptr;
+    return {v[0], v[1], v[2]};
+}
+
+OrderedJson body_json(const ExportedBody& body) {
+    return {
+        {"name", body.name},
+        {"object", body.object},
+        {"fixed", body.fixed},
+        {"on_pad", body.on_pad},
+        {"held", body.held},
+        {"struts", body.struts},
+        {"moved_m", vector_or_null(body.moved_m)},
+        {"parts", body.parts},
+        {"mass_kg", io::number(body.mass_kg)},
+        {"solid_m3", io::number(body.solid_m3)},
+        {"parts_m3", io::number(body.parts_m3)},
+        {"excess_share",
+         body.solid_m3 > 0 ? io::number(body.parts_m3 / body.solid_m3 - 1) : OrderedJson(nullptr)},
+        {"lost_m3", io::number(body.lost_m3)},
+        {"lost_share", body.solid_m3 > 0 ? io::number(body.lost_share()) : OrderedJson(nullptr)}};
+}
+
 }  // namespace
 
 std::vector<std::string> notes_of(const ExportSummary& summary) {
@@ -73,6 +101,19 @@ std::vector<std::string> notes_of(const ExportSummary& summary) {
     add_footings(summary, notes);
     add_cuts(summary, notes);
     return notes;
+}
+
+std::string bodies_json(const ExportSummary& summary) {
+    OrderedJson bodies = OrderedJson::array();
+    for (const ExportedBody& body : summary.bodies) bodies.push_back(body_json(body));
+    const OrderedJson json{{"schema", bodies_schema},
+                           {"deepest_overlap_m", io::number(summary.deepest_overlap_m)},
+                           {"floor_m", io::number(summary.floor_m)},
+                           {"free_place_m", vector_or_null(summary.free_place_m)},
+                           {"free_radius_m", io::number(summary.free_radius_m)},
+                           {"notes", summary.notes},
+                           {"bodies", std::move(bodies)}};
+    return json.dump(1) + "\n";
 }
 
 }  // namespace topple::exports
