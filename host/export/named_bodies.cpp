@@ -2,28 +2,23 @@
 #include "export/named_bodies.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 
+#include "core/field_rules.h"
 #include "core/vectors.h"
 #include "topple/error.h"
 
 namespace topple::exports {
 namespace {
 
-template <class Values>
-bool finite(const Values& v) {
-    return std::ranges::all_of(v, [](double each) { return std::isfinite(each); });
-}
-
 // What is wrong with a body; empty: nothing.
 std::string fault_of(const Body& body) {
-    if (!finite(body.center_m)) return "its centre of mass is not known";
+    if (!rules::finite(body.center_m)) return "its centre of mass is not known";
     for (const ConvexPart& part : body.parts)
-        if (!std::ranges::all_of(part.corner, finite<Vec3>)) return "its shape is not finite";
+        if (!rules::finite(part.corner)) return "its shape is not finite";
     if (body.fixed) return {};
     if (!has_mass(body)) return "it has no mass";
-    if (!finite(body.inertia_kg_m2)) return "its inertia is not known";
+    if (!rules::finite(body.inertia_kg_m2)) return "its inertia is not known";
     if (!has_inertia(body)) return "its inertia is not positive";
     return {};
 }
@@ -51,7 +46,7 @@ bool has_mass(const Body& body) {
 }
 
 bool has_inertia(const Body& body) {
-    if (!has_mass(body) || !finite(body.inertia_kg_m2)) return false;
+    if (!has_mass(body) || !rules::finite(body.inertia_kg_m2)) return false;
     const Eigen::Matrix3d inertia(body.inertia_kg_m2.data());
     return inertia.llt().info() == Eigen::Success;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/field_rules.h"
 #include "io/json_values.h"
 
 namespace topple::exports {
@@ -70,9 +71,7 @@ void add_cuts(const ExportSummary& summary, std::vector<std::string>& notes) {
 
 // null for a vector that is not finite.
 OrderedJson vector_or_null(const Vec3& v) {
-    for (const double x : v)
-        if (!std::isfinite(x)) return nullptr;
-    return {v[0], v[1], v[2]};
+    return rules::finite(v) ? OrderedJson(v) : OrderedJson(nullptr);
 }
 
 OrderedJson body_json(const ExportedBody& body) {

@@ -53,9 +53,9 @@ std::optional<Rgb8> SurfaceColours::at(const Cell& corner, std::int32_t object) 
                     const std::uint32_t found =
                         table_.find(moved({corner[0] + i, corner[1] + j, corner[2] + k}));
                     if (found == report::CellTable::absent || object_[found] != object ||
-                        !seen_[found].known)
+                        !seen_[found])
                         continue;
-                    seen.add(seen_[found].colour);
+                    seen.add(*seen_[found]);
                 }
             }
         }

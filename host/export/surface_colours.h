@@ -33,7 +33,7 @@ class SurfaceColours {
     std::array<std::int32_t, 3> first_{};
     report::CellTable table_;
     std::vector<std::int32_t> object_;
-    std::vector<report::CellColours::Known> seen_;
+    std::vector<std::optional<Rgb8>> seen_;
 };
 
 }  // namespace topple

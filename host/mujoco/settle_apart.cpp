@@ -8,7 +8,6 @@
 #include "child/program.h"
 #include "core/number_text.h"
 #include "io/text.h"
-#include "mujoco/message.h"
 #include "topple/error.h"
 
 namespace topple::mujoco {

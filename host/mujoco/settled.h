@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "child/message.h"
+
 // What MuJoCo makes of an export: all objects free at once, and nobody touches them.
 namespace topple::mujoco {
 
@@ -30,5 +32,10 @@ struct Settled {
     double wall_s = 0;            // and that took
     std::vector<Motion> motions;  // in the file's order
 };
+
+// As topple-mujoco answers. The numbers that are read may be anything, as they may in a run; throws
+// child::BadAnswer.
+void write_settled(const Settled& settled);
+Settled read_settled(const child::Answer& answer);
 
 }  // namespace topple::mujoco

@@ -4,8 +4,6 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
-#include <algorithm>
-#include <cmath>
 #include <new>
 #include <numbers>
 
@@ -16,10 +14,8 @@ namespace topple::report {
 namespace {
 
 std::uint32_t packed(const Colour& c) {
-    const auto byte = [](double v) {
-        return static_cast<std::uint32_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
-    };
-    return byte(c.red) << 16 | byte(c.green) << 8 | byte(c.blue);
+    return std::uint32_t{channel_byte(c.red)} << 16 | std::uint32_t{channel_byte(c.green)} << 8 |
+           channel_byte(c.blue);
 }
 
 }  // namespace
@@ -71,7 +67,7 @@ struct Canvas::Page {
     void use(const Colour& c) const { cairo_set_source_rgb(context, c.red, c.green, c.blue); }
 };
 
-Colour colour(const std::array<std::uint8_t, 3>& bytes) {
+Colour colour(const Rgb8& bytes) {
     return {bytes[0] / 255.0, bytes[1] / 255.0, bytes[2] / 255.0};
 }
 

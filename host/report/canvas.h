@@ -8,13 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "core/colour_space.h"
+
 // Drawing without a display, by cairo.
 namespace topple::report {
 
 struct Colour {
     double red = 0, green = 0, blue = 0;  // 0 to 1, sRGB
 };
-Colour colour(const std::array<std::uint8_t, 3>& bytes);
+Colour colour(const Rgb8& bytes);
 
 // Pixels, row by row from the top.
 struct Raster {

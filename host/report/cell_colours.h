@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/colour_space.h"
@@ -21,13 +22,9 @@ class CellColours {
 
     // index, body: of each cell; `table` finds the cells by index. Nothing where nothing of a body
     // was seen.
-    struct Known {
-        Rgb8 colour{};
-        bool known = false;
-    };
-    std::vector<Known> spread(const CellTable& table,
-                              const std::vector<std::array<std::int32_t, 3>>& index,
-                              const std::vector<std::int32_t>& body) const;
+    std::vector<std::optional<Rgb8>> spread(const CellTable& table,
+                                            const std::vector<std::array<std::int32_t, 3>>& index,
+                                            const std::vector<std::int32_t>& body) const;
 
   private:
     std::vector<ColourSum> sums_;

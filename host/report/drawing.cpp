@@ -42,10 +42,10 @@ std::vector<int> numbers_of(const Landscape& landscape) {
     return number;
 }
 
-Bytes3 colour_along(std::span<const Bytes3> colours, double share) {
+Rgb8 colour_along(std::span<const Rgb8> colours, double share) {
     const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
     const std::size_t low = std::min(static_cast<std::size_t>(at), colours.size() - 2);
-    Bytes3 out{};
+    Rgb8 out{};
     for (std::size_t c = 0; c < 3; ++c) {
         out[c] = static_cast<std::uint8_t>(std::lround(
             colours[low][c] + (colours[low + 1][c] - colours[low][c]) * (at - double(low))));
@@ -53,7 +53,7 @@ Bytes3 colour_along(std::span<const Bytes3> colours, double share) {
     return out;
 }
 
-Bytes3 ramp_colour(double share) {
+Rgb8 ramp_colour(double share) {
     return colour_along(ramp, share);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/colour_space.h"
 #include "topple/scene.h"
 
 // Pictures of an object's energy landscapes (paper, Figs. 5 and 6), as what is to be drawn: the
@@ -16,7 +17,6 @@
 namespace topple::report {
 
 using Point = std::array<double, 2>;  // x to the right, y downwards, pixels
-using Bytes3 = std::array<std::uint8_t, 3>;
 
 struct Drawing {
     enum class Style : std::uint8_t { axis, curve, border, pass, lowest, pose, now };
@@ -33,7 +33,7 @@ struct Drawing {
     struct Swatch {
         Point corner;
         double width, height;
-        Bytes3 colour;
+        Rgb8 colour;
     };
     struct Label {
         Point at;  // of the base line
@@ -56,7 +56,7 @@ struct Drawing {
         double size;
         std::int32_t side;               // squares in a row
         std::vector<std::uint8_t> code;  // rows from above: into the palette
-        std::vector<Bytes3> palette;
+        std::vector<Rgb8> palette;
     };
     std::string title;
     double width = 0, height = 0;
@@ -73,24 +73,24 @@ struct Drawing {
 };
 
 // Low to high energy.
-inline constexpr std::array<Bytes3, 6> ramp{{{38, 62, 126},
-                                             {66, 124, 178},
-                                             {150, 196, 206},
-                                             {240, 228, 188},
-                                             {232, 146, 84},
-                                             {158, 40, 44}}};
+inline constexpr std::array<Rgb8, 6> ramp{{{38, 62, 126},
+                                           {66, 124, 178},
+                                           {150, 196, 206},
+                                           {240, 228, 188},
+                                           {232, 146, 84},
+                                           {158, 40, 44}}};
 inline constexpr int bands = 14;  // of equal energy: their borders are contours
 
 // Unsafety 1 to 10, pale to dark: lightness alone tells the order.
-inline constexpr std::array<Bytes3, 5> unsafety_ramp{
+inline constexpr std::array<Rgb8, 5> unsafety_ramp{
     {{253, 236, 178}, {252, 187, 92}, {240, 118, 56}, {201, 44, 44}, {112, 10, 50}}};
 
 // What may move and has no unsafety: no scan shows what holds it. No hue of the ramp's.
-inline constexpr Bytes3 unranked_colour{118, 132, 176};
+inline constexpr Rgb8 unranked_colour{118, 132, 176};
 
 // Share 0 to 1 of the way along colours.
-Bytes3 colour_along(std::span<const Bytes3> colours, double share);
-Bytes3 ramp_colour(double share);
+Rgb8 colour_along(std::span<const Rgb8> colours, double share);
+Rgb8 ramp_colour(double share);
 
 // Where the map of the sphere has an up direction (x east, y north, z up): in units of its radius.
 Point map_of(const Vec3& up);

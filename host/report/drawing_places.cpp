@@ -16,8 +16,8 @@ using Anchor = Drawing::Anchor;
 // Codes of the palette: not known, in the way, then work, then falls.
 constexpr std::uint8_t unknown = 0, blocked = 1, work = 2, steps = 16, falls = work + steps;
 
-std::vector<Bytes3> palette() {
-    std::vector<Bytes3> out{{234, 236, 239}, {92, 96, 104}};
+std::vector<Rgb8> palette() {
+    std::vector<Rgb8> out{{234, 236, 239}, {92, 96, 104}};
     for (int n = 0; n < steps; ++n) out.push_back(ramp_colour(0.5 + 0.5 * (n + 0.5) / steps));
     for (int n = 0; n < steps; ++n) out.push_back(ramp_colour(0.34 * (1 - (n + 0.5) / steps)));
     return out;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/extents.h"
+#include "core/field_rules.h"
 #include "report/cells.h"
-#include "report/view_frame.h"
 
 namespace topple::report {
 namespace {
@@ -32,7 +32,7 @@ Arrows pack_arrows(const FieldSamples& field, const Rotation& view_from_input, d
     for (std::size_t i = 0; i < field.x.size(); ++i) {
         const Vec3 p = turned(view_from_input, {field.x[i], field.y[i], field.z[i]});
         const Vec3 v = turned(view_from_input, {field.vx[i], field.vy[i], field.vz[i]});
-        if (!finite(p) || !finite(v)) continue;
+        if (!rules::finite(p) || !rules::finite(v)) continue;
         box.add(p);
         const float density = std::isfinite(field.density[i]) ? field.density[i] : 0.0f;
         all.push_back({float(p[0]), float(p[1]), float(p[2]), float(v[0]), float(v[1]), float(v[2]),

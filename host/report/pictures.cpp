@@ -9,11 +9,12 @@
 #include <string>
 
 #include "core/number_text.h"
-#include "core/vectors.h"
+#include "core/ranked.h"
+#include "core/rotation.h"
 #include "io/palette.h"
 #include "report/scene_image.h"
-#include "report/view_frame.h"
 #include "safety/disturbances.h"
+#include "safety/largest_risk.h"
 
 namespace topple::report {
 namespace {
@@ -24,28 +25,23 @@ constexpr int width = 1280, height = 800;
 constexpr std::array<double, 4> margin{24, 24, 76, 24};
 constexpr std::size_t labelled = 10;
 
-Bytes3 faded(const Bytes3& colour, double share) {
-    return colour_along(std::array{colour, Bytes3{222, 223, 222}}, share);
-}
-
-double largest_risk(const Object& object) {
-    double most = 0;
-    for (const auto& [name, risk] : object.risk_J) most = risk > most ? risk : most;
-    return most;
+Rgb8 faded(const Rgb8& colour, double share) {
+    return colour_along(std::array{colour, Rgb8{222, 223, 222}}, share);
 }
 
 // What can fall, is not among the safest and is seen, the largest risk first, as far as it is
 // labelled: a label of what a wall hides would stand on the wall.
 std::vector<const Object*> riskiest(const Scene& scene, const SceneImage& image) {
+    using safety::largest_risk;
     constexpr double least_unsafety = 2;
     std::vector<const Object*> out;
     for (const Object& object : scene.objects) {
-        if (!object.grounded && object.unsafety >= least_unsafety && largest_risk(object) > 0 &&
-            image.sees(object.id))
+        if (!object.grounded && object.unsafety >= least_unsafety &&
+            largest_risk(object).risk_J > 0 && image.sees(object.id))
             out.push_back(&object);
     }
-    std::ranges::stable_sort(
-        out, [](const Object* a, const Object* b) { return largest_risk(*a) > largest_risk(*b); });
+    std::ranges::stable_sort(out, std::ranges::greater{},
+                             [](const Object* o) { return largest_risk(*o).risk_J; });
     out.resize(std::min(out.size(), labelled));
     return out;
 }
@@ -72,8 +68,8 @@ class Pictures {
 
   private:
     // The colour of each group; `fade` is how far movable things step back.
-    std::vector<Bytes3> colours(bool by_risk, double fade) const {
-        std::vector<Bytes3> out;
+    std::vector<Rgb8> colours(bool by_risk, double fade) const {
+        std::vector<Rgb8> out;
         for (const auto& [primitive, id] : view_.groups) {
             const auto found = std::ranges::find(scene_.objects, id, &Object::id);
             const bool movable = found != scene_.objects.end() && !found->grounded;
@@ -157,7 +153,7 @@ class Pictures {
     }
 
     static void quad(Overlay& overlay, const Vec3& corner, const Vec3& a, const Vec3& b,
-                     const Bytes3& colour) {
+                     const Rgb8& colour) {
         const Vec3 far = along(along(corner, 1, a), 1, b);
         overlay.triangle(corner, along(corner, 1, a), far, colour);
         overlay.triangle(corner, far, along(corner, 1, b), colour);
@@ -175,9 +171,8 @@ class Pictures {
                                : style.strength == Arrows::Strength::mean ? length * a[6]
                                                                           : length);
         }
-        std::vector<double> sorted = strength;
-        std::ranges::sort(sorted);
-        const double strongest = sorted[(sorted.size() - 1) * 95 / 100];
+        std::vector<double> all = strength;
+        const double strongest = ranked(all, (all.size() - 1) * 95 / 100);
         Overlay overlay(image_, style.below_things);
         for (std::size_t n = 0; n < arrows.size(); ++n) {
             const double share = strongest > 0 ? std::min(strength[n] / strongest, 1.0) : 1.0;
@@ -207,14 +202,14 @@ class Pictures {
                                radius * thickness * std::cos(angle), side),
                          radius * thickness * std::sin(angle), other);
         };
-        const Bytes3 colour = ramp_colour(share);
+        const Rgb8 colour = ramp_colour(share);
         constexpr std::array<std::array<double, 2>, 4> rings{
             {{0.22, 0}, {0.22, 0.55}, {0.75, 0.55}, {0.01, 1}}};
         for (int n = 0; n < sides; ++n) {
             const double angle = 2 * std::numbers::pi * (n + 0.5) / sides;
             const double light =
                 0.8 + 0.2 * (side[2] * std::cos(angle) + other[2] * std::sin(angle));
-            Bytes3 lit{};
+            Rgb8 lit{};
             for (std::size_t c = 0; c < 3; ++c)
                 lit[c] = static_cast<std::uint8_t>(std::lround(colour[c] * light));
             for (std::size_t ring = 0; ring + 1 < rings.size(); ++ring) {
@@ -226,7 +221,7 @@ class Pictures {
         }
     }
 
-    Canvas page(const std::string& name, const std::vector<Bytes3>& colour_of_group,
+    Canvas page(const std::string& name, const std::vector<Rgb8>& colour_of_group,
                 const Overlay& overlay, const std::string& title, const std::string& says,
                 bool photo = false) {
         boxes_.clear();
@@ -251,7 +246,7 @@ class Pictures {
         canvas.text(20, base, says, Align::left, font);
     }
 
-    void legend(Canvas& canvas, std::span<const Bytes3> stops, const std::string& low,
+    void legend(Canvas& canvas, std::span<const Rgb8> stops, const std::string& low,
                 const std::string& high) const {
         constexpr double x = 20, y = height - 50, wide = 220, tall = 12;
         for (int n = 0; n < static_cast<int>(wide); ++n)
@@ -261,7 +256,7 @@ class Pictures {
     }
 
     // Above the legend.
-    static void swatch(Canvas& canvas, const Bytes3& of, const std::string& says) {
+    static void swatch(Canvas& canvas, const Rgb8& of, const std::string& says) {
         constexpr double x = 20, y = height - 76, side = 14;
         canvas.rectangle(x, y, side, side, colour(of));
         canvas.text(x + side + 8, y + side - 2, says, Align::left, {.size = 13});

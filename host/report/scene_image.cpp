@@ -162,7 +162,7 @@ void SceneImage::find_crevices() {
 }
 
 void SceneImage::Overlay::triangle(const Vec3& a, const Vec3& b, const Vec3& c,
-                                   const Bytes3& colour) {
+                                   const Rgb8& colour) {
     const auto what = static_cast<std::uint32_t>(image_.faces_.size() + colours_.size());
     colours_.push_back(colour);
     front_.triangle(image_.fine_camera_, a, b, c, what);
@@ -190,7 +190,7 @@ bool SceneImage::is_rim(std::size_t at) const {
     return false;
 }
 
-Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group, const Overlay& overlay,
+Raster SceneImage::shaded(const std::vector<Rgb8>& colour_of_group, const Overlay& overlay,
                           bool photo) const {
     constexpr Colour top{0.914, 0.929, 0.945}, bottom{0.973, 0.976, 0.98};
     const DepthImage& front = overlay.front_;

@@ -33,18 +33,18 @@ class SceneImage {
             : image_(image),
               front_(through ? DepthImage(image.solids_.width(), image.solids_.height())
                              : image.solids_) {}
-        void triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Bytes3& colour);
+        void triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Rgb8& colour);
 
       private:
         friend class SceneImage;
         const SceneImage& image_;
         DepthImage front_;
-        std::vector<Bytes3> colours_;
+        std::vector<Rgb8> colours_;
     };
 
     // The picture, its solids coloured by group: one colour for each of the view's groups. With
     // `photo` they have those of the scan, as far as these are known.
-    Raster shaded(const std::vector<Bytes3>& colour_of_group, const Overlay& overlay,
+    Raster shaded(const std::vector<Rgb8>& colour_of_group, const Overlay& overlay,
                   bool photo = false) const;
 
   private:

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/extents.h"
+#include "core/field_rules.h"
 #include "core/scene_bounds.h"
 #include "report/cell_colours.h"
 #include "report/cells.h"
@@ -98,8 +99,9 @@ class ViewPacker::Work {
 
     // Whether a place is drawn: strays far from all others would leave the rest no steps.
     bool drawn(const Vec3& p) const {
-        return finite(p) && bounds_.contains(static_cast<float>(p[0]), static_cast<float>(p[1]),
-                                             static_cast<float>(p[2]));
+        return rules::finite(p) &&
+               bounds_.contains(static_cast<float>(p[0]), static_cast<float>(p[1]),
+                                static_cast<float>(p[2]));
     }
 
     // The box of all that is drawn, and how it divides into steps: 65,535 at most, and none finer
@@ -109,7 +111,7 @@ class ViewPacker::Work {
         const auto add = [&](const auto& cloud) {
             for (std::size_t i = 0; i < cloud.x.size(); ++i) {
                 const auto p = place(cloud, i);
-                if (!finite(p)) continue;
+                if (!rules::finite(p)) continue;
                 for (std::size_t axis = 0; axis < 3; ++axis)
                     at[axis].push_back(static_cast<float>(p[axis]));
             }
@@ -242,12 +244,12 @@ class ViewPacker::Work {
         const auto& points = scene_.points;
         for (std::size_t i = 0; i < points.nx.size(); ++i) {
             const auto p = place(points, i);
-            if (!finite(p)) continue;
+            if (!rules::finite(p)) continue;
             const auto found = table.find(index_of(p, edge));
             if (found == CellTable::absent) continue;
             const auto n =
                 turned(view_.view_from_input, {points.nx[i], points.ny[i], points.nz[i]});
-            if (!finite(n)) continue;
+            if (!rules::finite(n)) continue;
             for (std::size_t axis = 0; axis < 3; ++axis)
                 cells[found].normal[axis] += static_cast<float>(n[axis]);
         }
@@ -274,7 +276,7 @@ class ViewPacker::Work {
         CellColours colours(cells.size());
         for (std::size_t i = 0; i < points.x.size(); ++i) {
             const auto p = place(points, i);
-            if (!finite(p)) continue;
+            if (!rules::finite(p)) continue;
             const auto found = table.find(index_of(p, edge));
             if (found == CellTable::absent || object[found] != std::max(points.object[i], -1))
                 continue;
@@ -283,9 +285,9 @@ class ViewPacker::Work {
         colours_ = colours.spread(table, index, object);
     }
 
-    static std::array<std::uint8_t, 4> photo(const CellColours::Known& seen) {
-        const Rgb8& c = seen.colour;
-        return {c[0], c[1], c[2], seen.known ? std::uint8_t{255} : std::uint8_t{0}};
+    static std::array<std::uint8_t, 4> photo(const std::optional<Rgb8>& colour) {
+        if (!colour) return {};
+        return {(*colour)[0], (*colour)[1], (*colour)[2], 255};
     }
 
     void write_cells(const std::vector<Cell>& cells, double edge) {
@@ -323,8 +325,7 @@ class ViewPacker::Work {
         const Cell* cell = cell_below(p, n, background);
         const auto facing = background && cell ? direction_code(cell->normal) : no_direction;
         out.aux = aux(n, facing + (cell && cell->completed ? 64 : 0));
-        if (!surface.colour.empty() && surface.colour[v])
-            out.photo = photo({*surface.colour[v], true});
+        if (!surface.colour.empty()) out.photo = photo(surface.colour[v]);
         return out;
     }
     // What is drawn of the voxels below a place of the surface, or beside it. Of the background,
@@ -379,12 +380,12 @@ class ViewPacker::Work {
             Vec3 n{};
             if (!points.nx.empty())
                 n = turned(view_.view_from_input, {points.nx[i], points.ny[i], points.nz[i]});
-            if (!finite(n)) n = {};
+            if (!rules::finite(n)) n = {};
             if (points.nx.empty() && is_background(points.object[i])) n = background_normal(p);
             record.aux = aux(n, 0);
             if (view_.coloured) {
                 const Rgb8 colour = colour_of_point(i);
-                record.photo = photo({colour, colour != Rgb8{0, 0, 0}});
+                if (colour != Rgb8{0, 0, 0}) record.photo = photo(colour);
             }
             out.add(record, view_.coloured);
         }
@@ -408,9 +409,9 @@ class ViewPacker::Work {
     Bounds<float> bounds_;
     Extents<double> solid_box_;
     double lattice_shift_ = 0.5;
-    std::vector<Cell> cells_;                  // what is drawn, cubes of view_.cube_m
-    CellTable table_;                          // finds them
-    std::vector<CellColours::Known> colours_;  // of what is drawn, where the scan has colours
+    std::vector<Cell> cells_;                   // what is drawn, cubes of view_.cube_m
+    CellTable table_;                           // finds them
+    std::vector<std::optional<Rgb8>> colours_;  // of what is drawn, where the scan has colours
 };
 
 ViewPacker::ViewPacker(const Scene& scene, const ViewLimits& limits, bool with_surfaces)

@@ -32,8 +32,4 @@ Rotation view_frame(const Scene& scene) {
     return {x, cross(up, x), up};
 }
 
-bool finite(const Vec3& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
-
 }  // namespace topple::report

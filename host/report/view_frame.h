@@ -6,10 +6,8 @@
 
 namespace topple::report {
 
-// The rotation from the input to the view: the scene's own frame where it has one with
-// z up, else any with z up.
+// The rotation from the input to the view: the scene's own frame where it has one with z up, else
+// any with z up.
 Rotation view_frame(const Scene& scene);
-
-bool finite(const Vec3& p);
 
 }  // namespace topple::report

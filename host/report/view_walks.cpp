@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/view_frame.h"
+#include "core/field_rules.h"
+#include "core/ranked.h"
 
 namespace topple::report {
 namespace {
@@ -13,8 +14,9 @@ bool fits(const Walks& walks) {
     if (walks.nx <= 0 || walks.ny <= 0 || walks.nx > (1 << 20) || walks.ny > (1 << 20))
         return false;
     const auto size = static_cast<std::size_t>(walks.nx * walks.ny);
-    return walks.floor_m.size() == size && walks.visits.size() == size && finite(walks.corner_m) &&
-           finite(walks.along_x_m) && finite(walks.along_y_m);
+    return walks.floor_m.size() == size && walks.visits.size() == size &&
+           rules::finite(walks.corner_m) && rules::finite(walks.along_x_m) &&
+           rules::finite(walks.along_y_m);
 }
 
 // The mean visits of a merged cell, or -1 where none of its cells is walkable; and their floor.
@@ -44,8 +46,7 @@ Merged merged(const Walks& walks, std::int64_t x0, std::int64_t y0, std::int64_t
 double busy(std::vector<double> values) {
     std::erase_if(values, [](double v) { return !(v > 0); });
     if (values.empty()) return 0;
-    std::ranges::sort(values);
-    return values[(values.size() - 1) * 99 / 100];
+    return ranked(values, (values.size() - 1) * 99 / 100);
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ PackedWalks pack_walks(const Walks& walks, const Rotation& view_from_input, std:
         std::vector<std::array<float, 3>> way;
         for (const Vec3& corner : path) {
             const Vec3 p = turned(view_from_input, corner);
-            if (finite(p)) way.push_back({float(p[0]), float(p[1]), float(p[2])});
+            if (rules::finite(p)) way.push_back({float(p[0]), float(p[1]), float(p[2])});
         }
         if (way.size() > 1) out.paths.push_back(std::move(way));
     }

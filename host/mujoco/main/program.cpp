@@ -8,7 +8,6 @@
 #include "child/confine.h"
 #include "child/process.h"
 #include "mujoco/main/settle.h"
-#include "mujoco/message.h"
 #include "topple/version.h"
 
 using namespace topple;

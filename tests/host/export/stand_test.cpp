@@ -83,21 +83,35 @@ TEST(Brace, WhatHangsInTheAirGetsAPad) {
     std::vector<Body> bodies{ground(), firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 1, {})};
     brace(bodies, 0.01);
     ASSERT_EQ(bodies.size(), 3u);
-    EXPECT_TRUE(bodies[1].on_pad);
-    EXPECT_FALSE(bodies[1].fixed);
     EXPECT_TRUE(bodies[2].fixed);
     EXPECT_NEAR(bodies[2].parts[0].high[2], 1, 1e-9);
     EXPECT_EQ(bodies[1].carried_by, std::vector<std::int32_t>{2});
 }
 
-TEST(Brace, WhatHangsOnAWallIsHeld) {
+// By body: free, on a pad, held.
+std::string kept(std::vector<Body> bodies) {
+    const std::size_t count = bodies.size();
+    brace(bodies, 0.01);
+    std::string out;
+    for (std::size_t n = 0; n < count; ++n) {
+        EXPECT_EQ(bodies[n].fixed, bodies[n].level == 0 || bodies[n].held);
+        out += bodies[n].held ? 'h' : bodies[n].on_pad ? 'p' : '.';
+    }
+    return out;
+}
+
+TEST(Brace, OnlyWhatNothingHoldsGetsAPadOrIsHeld) {
+    Body falls = firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 1, {});
+    EXPECT_EQ(kept({ground(), falls}), ".p");
+    falls.firm_m = 0;
+    EXPECT_EQ(kept({ground(), falls}), "..") << "by itself";
     Body wall = ground();
     wall.parts.push_back(block({-0.1, -1, 0}, {0, 1, 2.5}));
-    std::vector<Body> bodies{wall, firm(block({0, 0, 1.5}, {0.2, 0.2, 2}), 1, {})};
-    brace(bodies, 0.01);
-    EXPECT_TRUE(bodies[1].held);
-    EXPECT_TRUE(bodies[1].fixed);
-    EXPECT_EQ(bodies.size(), 2u);
+    EXPECT_EQ(kept({wall, firm(block({0, 0, 1.5}, {0.2, 0.2, 2}), 1, {})}), ".h");
+    // Two that lean on one another: the upper one stands on the lower one.
+    EXPECT_EQ(kept({firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 2, {1}),
+                    firm(block({0, 0, 0.8}, {0.2, 0.2, 1}), 1, {0})}),
+              ".p");
 }
 
 TEST(Brace, ATableOfWhichOneLegWasSeenGetsStruts) {
@@ -155,23 +169,6 @@ TEST(FreePlace, IsTheMiddleOfTheWidestOne) {
     EXPECT_LE(seen->at[0], 2.9);
     bodies.push_back(body_of(block({0, 0, 1}, {4, 2, 1.1}), 1, {}));
     EXPECT_FALSE(free_place(floor, bodies));
-}
-
-TEST(Brace, WhatFallsByItselfIsLeftToFall) {
-    Body falls = firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 1, {});
-    falls.firm_m = 0;
-    std::vector<Body> bodies{ground(), falls};
-    brace(bodies, 0.01);
-    EXPECT_EQ(bodies.size(), 2u);
-    EXPECT_FALSE(bodies[1].fixed);
-}
-
-TEST(Brace, WhatOnlyLeansOnItsLikeDoesNotStand) {
-    std::vector<Body> bodies{firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 2, {1}),
-                             firm(block({0, 0, 0.8}, {0.2, 0.2, 1}), 1, {0})};
-    brace(bodies, 0.01);
-    EXPECT_TRUE(bodies[1].on_pad || bodies[1].held);
-    EXPECT_FALSE(bodies[0].on_pad || bodies[0].held);  // it stands on that
 }
 
 TEST(Footing, OfCrossedBarsIsWhereTheyCross) {

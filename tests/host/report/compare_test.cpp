@@ -20,6 +20,12 @@ class Compare : public test::InBrowser {
             text.replace(at, 2, "<\\/");
         return text;
     }
+    static Scene room(double voxel_m, const Vec3& size_m) {
+        Scene scene = test::SyntheticScene(voxel_m).make();
+        for (Object& object : scene.objects) object.size_m = size_m;
+        scene.voxel_size_m = 0.02;
+        return scene;
+    }
     // What became of each object, once `change` has made another parse of it.
     Opened compared(const Scene& scene, const std::string& change) {
         write_report(folder_ / "report.html", scene);
@@ -36,13 +42,9 @@ class Compare : public test::InBrowser {
 };
 
 TEST_F(Compare, tells_what_became_safer) {
-    Scene scene = test::SyntheticScene(0.2).make();
-    scene.voxel_size_m = 0.02;
-    for (Object& object : scene.objects) {
-        object.size_m = {0.4, 0.3, 0.5};
-        // Boxes lie about the centres of mass, as in what earlier versions wrote.
-        object.box_middle_m = Object{}.box_middle_m;
-    }
+    Scene scene = room(0.2, {0.4, 0.3, 0.5});
+    // Boxes lie about the centres of mass, as in what earlier versions wrote.
+    for (Object& object : scene.objects) object.box_middle_m = Object{}.box_middle_m;
     for (std::size_t id = 1; id < 6; ++id)
         scene.objects[id].center_of_mass_m = {double(id), 1, 0.5};
     write_report(folder_ / "report.html", scene);
@@ -90,9 +92,7 @@ TEST_F(Compare, tells_what_became_safer) {
 }
 
 TEST_F(Compare, measures_moves_by_boxes) {
-    Scene scene = test::SyntheticScene(0.1).make();
-    for (Object& object : scene.objects) object.size_m = {0.4, 0.3, 0.5};
-    scene.voxel_size_m = 0.02;
+    const Scene scene = room(0.1, {0.4, 0.3, 0.5});
     // The centre of mass of 1 rose, 2 was carried and is half as heavy, 3 was pushed, of 4 more was
     // seen to one side, and 5, elsewhere, is another thing: half as high.
     const auto page = compared(scene, R"(
@@ -119,9 +119,7 @@ TEST_F(Compare, measures_moves_by_boxes) {
 
 // What is gone may be part of what has its solid now: in its place, or beside where that was.
 TEST_F(Compare, tells_of_what_the_missing_may_be_part) {
-    Scene scene = test::SyntheticScene(0.1).make();
-    for (Object& object : scene.objects) object.size_m = {0.3, 0.3, 0.5};
-    scene.voxel_size_m = 0.02;
+    const Scene scene = room(0.1, {0.3, 0.3, 0.5});
     const auto page = compared(scene, R"(
         other.source = 'later.ply';
         const [, table, cup, monitor, shelf, ball] = other.objects, part = object => other.primitives.find(each => each.id === object.primitives[0]);
@@ -141,8 +139,7 @@ TEST_F(Compare, tells_of_what_the_missing_may_be_part) {
 }
 
 TEST_F(Compare, tells_errors_that_are_too_large_from_no_change) {
-    Scene scene = test::SyntheticScene(0.2).make();
-    for (Object& object : scene.objects) object.size_m = {0.4, 0.3, 0.5};
+    const Scene scene = room(0.2, {0.4, 0.3, 0.5});
     const auto page = compared(scene, R"(
         other.source = 'later.ply';
         const [, , , monitor, shelf] = other.objects;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "mujoco/message.h"
+#include "mujoco/settled.h"
 
 namespace topple::mujoco {
 namespace {
