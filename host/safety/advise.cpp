@@ -99,8 +99,7 @@ class Mover {
         changed.toppling = std::make_shared<physics::Toppling>(
             (falls ? elsewhere.open : elsewhere.level).elsewhere(slide));
         for (const safety::Disturbance& d : disturbances_) {
-            if (d.response.empty()) continue;
-            if (!d.response[o]) continue;
+            if (d.response.empty() || !d.response[o]) continue;
             place.risk_J =
                 std::max(place.risk_J, safety::risk_of(d.response[o](changed), changed, 1).mean_J);
         }
@@ -163,9 +162,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const Body> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
-                               std::span<const std::vector<safety::Risk>> risk,
-                               std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
-                               double friction, double tolerable_J, const Unseen& unseen) {
+                               std::span<const std::vector<safety::Risk>> risk, double friction,
+                               double tolerable_J, const Unseen& unseen) {
     constexpr double nearly_all = 0.9;
     const SolidCells& cells = solids.cells();
     std::vector<Suggestion> out(at_risk.size());
@@ -206,8 +204,9 @@ std::vector<Suggestion> advise(const SolidScene& solids,
             placements.push_back({chosen[n], place.di, place.dj, std::move(place.there)});
         }
     }
-    for (const auto& field : fields) {
-        const std::vector<safety::Risk> there = field->risk_at(placements);
+    for (const safety::Disturbance& disturbance : disturbances) {
+        if (!disturbance.risk_at) continue;
+        const std::vector<safety::Risk> there = disturbance.risk_at(placements);
         for (std::size_t n = 0; n < there.size(); ++n)
             all_J[n] = std::max(all_J[n], there[n].mean_J);
     }

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "objects/object_stage.h"
-#include "safety/fastening.h"
 #include "safety/fields.h"
+#include "safety/find_fastenings.h"
 
 // What would lower the risk of each object to what is tolerated. Grid frame.
 namespace topple {
@@ -24,7 +23,7 @@ struct Suggestion {
     double risk_J = 0;           // its largest afterwards
     safety::Push hold{};         // fix: what a fixing must take, at the top of the object
     std::string hold_against{};  // the disturbance that asks for most of that
-    Fastening fasten{};          // what it may be fastened to (fastening.h)
+    Fastening fasten{};          // what it may be fastened to (find_fastenings.h)
     std::int32_t leg_of = -1;    // the object that it may be a leg of (legs.h); -1: none
 };
 
@@ -33,16 +32,14 @@ struct Suggestion {
 // off, out of the reach of walkers. What it carries is taken to move along. Places up to 1.5 m away
 // are looked at, for the `most_moved` riskiest. Else `fix`: the moment of the strongest push less
 // what its own weight holds, over its height, or the push less friction, if that is more.
-// fields: those that the disturbances are of.
 inline constexpr std::size_t most_moved = 16;
 std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::int32_t> object_of_primitive,
                                std::span<const Body> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
-                               std::span<const std::vector<safety::Risk>> risk,
-                               std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
-                               double friction, double tolerable_J, const Unseen& unseen = {});
+                               std::span<const std::vector<safety::Risk>> risk, double friction,
+                               double tolerable_J, const Unseen& unseen = {});
 
 // Whether what is known of object o, and with it its category, is to be doubted: how it stands is
 // one of several readings of the scan, none of them likelier than not; or it stood when it was

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <string>
-#include <tuple>
 
 #include "topple/error.h"
 
@@ -12,27 +11,21 @@ namespace topple::safety {
 Columns::Columns(const SolidCells& cells) : cells_(cells) {
     const std::size_t n = cells.size();
     if (n == 0) return;
-    i0 = cells.i.front();
-    ni = std::int64_t{cells.i.back()} - i0 + 1;
+    i0_ = cells.i.front();
+    ni_ = std::int64_t{cells.i.back()} - i0_ + 1;
     const auto [low, high] = std::minmax_element(cells.j.begin(), cells.j.end());
-    j0 = *low;
-    nj = std::int64_t{*high} - j0 + 1;
+    j0_ = *low;
+    nj_ = std::int64_t{*high} - j0_ + 1;
     constexpr std::int64_t limit = std::int64_t{1} << 28;
-    if (nj > limit || ni > limit / nj) {
+    if (nj_ > limit || ni_ > limit / nj_) {
         throw Error(ErrorKind::input,
-                    "the scene spans " + std::to_string(ni) + " x " + std::to_string(nj) +
+                    "the scene spans " + std::to_string(ni_) + " x " + std::to_string(nj_) +
                         " voxels, more than the 2^28 columns that the disturbance "
                         "fields can take; use a larger ParseOptions::voxel_m");
     }
-    first_.assign(static_cast<std::size_t>(ni * nj + 1), 0);
-    for (std::size_t c = 0; c < n; ++c) {
-        if (c && std::tie(cells.i[c], cells.j[c], cells.k[c]) <=
-                     std::tie(cells.i[c - 1], cells.j[c - 1], cells.k[c - 1])) {
-            throw Error(ErrorKind::usage,
-                        "solid cells are not sorted by (i, j, k) at cell " + std::to_string(c));
-        }
-        ++first_[static_cast<std::size_t>((cells.i[c] - i0) * nj + (cells.j[c] - j0)) + 1];
-    }
+    first_.assign(static_cast<std::size_t>(ni_ * nj_ + 1), 0);
+    for (std::size_t c = 0; c < n; ++c)
+        ++first_[static_cast<std::size_t>((cells.i[c] - i0_) * nj_ + (cells.j[c] - j0_)) + 1];
     for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
 
     const auto [deep, tall] = std::minmax_element(cells.k.begin(), cells.k.end());
@@ -40,18 +33,18 @@ Columns::Columns(const SolidCells& cells) : cells_(cells) {
     nk_ = std::int64_t{*tall} - k0_ + 1;
     words_ = (nk_ + 63) / 64;
     constexpr std::int64_t most_words = std::int64_t{1} << 24;  // 128 MiB
-    if (words_ > most_words / (ni * nj)) return;
-    bits_.assign(static_cast<std::size_t>(ni * nj * words_), 0);
+    if (words_ > most_words / (ni_ * nj_)) return;
+    bits_.assign(static_cast<std::size_t>(ni_ * nj_ * words_), 0);
     for (std::size_t c = 0; c < n; ++c) {
-        const std::int64_t column = (cells.i[c] - i0) * nj + (cells.j[c] - j0),
+        const std::int64_t column = (cells.i[c] - i0_) * nj_ + (cells.j[c] - j0_),
                            k = std::int64_t{cells.k[c]} - k0_;
         bits_[column * words_ + k / 64] |= std::uint64_t{1} << (k % 64);
     }
 }
 
 std::uint64_t Columns::solid(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    if (i < i0 || i >= i0 + ni || j < j0 || j >= j0 + nj) return 0;
-    const auto column = static_cast<std::size_t>((i - i0) * nj + (j - j0));
+    if (i < i0_ || i >= i0_ + ni_ || j < j0_ || j >= j0_ + nj_) return 0;
+    const auto column = static_cast<std::size_t>((i - i0_) * nj_ + (j - j0_));
     if (!bits_.empty()) {
         const std::int64_t at = k - k0_;
         const auto word = [&](std::int64_t w) {

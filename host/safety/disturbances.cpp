@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "core/listed.h"
@@ -13,19 +12,6 @@
 #include "topple/error.h"
 
 namespace topple::safety {
-namespace {
-
-class MadeField : public DisturbanceField {
-  public:
-    explicit MadeField(Disturbance disturbance) : disturbance_(std::move(disturbance)) {}
-    Disturbance disturbance() override { return std::move(disturbance_); }
-
-  private:
-    Disturbance disturbance_;
-};
-
-}  // namespace
-
 std::span<const DisturbanceKind* const> disturbance_kinds() {
     static const std::array kinds{&human_kind(), &wind_kind(), &earthquake_kind()};
     return kinds;
@@ -51,10 +37,6 @@ const DisturbanceKind& disturbance_kind(std::string_view name) {
         if (meant) message.append("; for ").append(name).append(" say ").append(kind->name);
     }
     throw Error(ErrorKind::usage, message);
-}
-
-std::unique_ptr<DisturbanceField> made_field(Disturbance disturbance) {
-    return std::make_unique<MadeField>(std::move(disturbance));
 }
 
 }  // namespace topple::safety

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,10 +44,8 @@ struct DisturbanceWords {
 struct DisturbanceKind {
     const char* name;
     DisturbanceWords words;
-    std::unique_ptr<DisturbanceField> (*field)(device::Device& device,
-                                               const Surroundings& surroundings,
-                                               std::span<const RiskObject> objects,
-                                               const ParseOptions& options);
+    Disturbance (*field)(device::Device& device, const Surroundings& surroundings,
+                         std::span<const RiskObject> objects, const ParseOptions& options);
     // What it reckons with, by names.
     std::map<std::string, double> (*events)(const ParseOptions& options);
     // What to ask where an option is in its range but was meant otherwise, perhaps; "": nothing.
@@ -64,8 +61,5 @@ std::span<const DisturbanceKind* const> disturbance_kinds();
 const DisturbanceKind* find_disturbance_kind(std::string_view name);
 // Throws Error(usage) that names those that there are.
 const DisturbanceKind& disturbance_kind(std::string_view name);
-
-// A field that has been made, and is asked nothing more.
-std::unique_ptr<DisturbanceField> made_field(Disturbance disturbance);
 
 }  // namespace topple::safety

@@ -72,6 +72,19 @@ struct Push {
     double force_N = 0, height_m = 0;
 };
 
+// What one disturbance means to one object.
+struct Risk {
+    double mean_J = 0;    // R = sum over p(W, way, z) S(W, way, z) (Eq. 7), joules per event
+    double spread_J = 0;  // its standard error: sqrt((sum p S^2 - R^2) / draws)
+    double chance = 0;    // per event, that it falls: sum of p where S > 0
+};
+// Where else an object might stand: its cells moved by whole voxels.
+struct Placement {
+    std::size_t object = 0;
+    std::int32_t di = 0, dj = 0;
+    RiskObject there;  // how it falls from there
+};
+
 struct Disturbance {
     std::string name;                           // of its kind (disturbances.h)
     FieldSamples samples;                       // grid frame, at most max_samples
@@ -81,16 +94,22 @@ struct Disturbance {
                                                 // share of the directions it is open to (wind) or
                                                 // 1 (earthquake); 0 for grounded objects
     Walks walks;                                // of the human field
+    std::vector<Push> strongest;                // by object: of all its events
+    std::vector<Fragility> fragility;           // by object, of an earthquake
+    std::vector<double> gust_m_s;               // of wind from all sides: as tipping_gusts has it
+    std::vector<std::string> notes;             // e.g. no walkable floor was found
+
     // By object: its work if its barrier, curve and edges were others, as where it stood elsewhere,
-    // just as exposed. Empty where exposure is another there (DisturbanceField::risk_at).
+    // just as exposed. Empty where exposure is another there: then risk_at tells.
     std::vector<std::function<std::vector<WorkSample>(const RiskObject&)>> response;
-    // Its work if objects stood more or less firmly, exposed as they are; empty: `response` tells
-    // it. Holds references to what the field was made from.
+
+    // What it can be asked as long as all that it was made from is there, as they refer to that.
+    // Its work if objects stood more or less firmly, exposed as they are; empty: `response` tells.
     std::function<std::vector<std::vector<WorkSample>>(std::span<const RiskObject>)> work_if;
-    std::vector<Push> strongest;       // by object: of all its events
-    std::vector<Fragility> fragility;  // by object, of an earthquake
-    std::vector<double> gust_m_s;      // of wind from all sides: as tipping_gusts has it
-    std::vector<std::string> notes;    // e.g. no walkable floor was found
+    // The risk of an object that stood elsewhere, by placement; empty: `response` tells.
+    std::function<std::vector<Risk>(std::span<const Placement>)> risk_at;
+    // By zone, the share of events in which somebody passes it; empty: it knows of nobody.
+    std::function<std::vector<double>(std::span<const FallZone>)> passing_shares;
 };
 
 inline constexpr std::size_t max_samples = 4000;  // arrows per field, for the report
@@ -111,32 +130,7 @@ double over_edge_J(const RiskObject& object, const Vec3& way);
 // slide_distance_m, and `support_m` at least.
 double slide_towards_m(const RiskObject& object, const Vec3& way, double support_m);
 
-// What one disturbance means to one object.
-struct Risk {
-    double mean_J = 0;    // R = sum over p(W, way, z) S(W, way, z) (Eq. 7), joules per event
-    double spread_J = 0;  // its standard error: sqrt((sum p S^2 - R^2) / draws)
-    double chance = 0;    // per event, that it falls: sum of p where S > 0
-};
 Risk risk_of(std::span<const WorkSample> work, const RiskObject& object, std::size_t draws);
-// Where else an object might stand: its cells moved by whole voxels.
-struct Placement {
-    std::size_t object = 0;
-    std::int32_t di = 0, dj = 0;
-    RiskObject there;  // how it falls from there
-};
-
-// A field of one kind, kept for more than one question. Holds references to all that it is made
-// from.
-class DisturbanceField {
-  public:
-    virtual ~DisturbanceField() = default;
-    virtual Disturbance disturbance() = 0;
-    // The risk of an object that stood elsewhere, by placement; nothing: Disturbance::response
-    // tells it.
-    virtual std::vector<Risk> risk_at(std::span<const Placement>) { return {}; }
-    // By zone, the share of events in which somebody passes it; nothing: it knows of nobody.
-    virtual std::vector<double> passing_shares(std::span<const FallZone>) { return {}; }
-};
 
 // For each object; all 0 for grounded ones.
 std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);

@@ -4,10 +4,15 @@
 #include <vector>
 
 #include "objects/object_stage.h"
-#include "safety/fastening.h"
 #include "solids/solid_parts.h"
 
 namespace topple {
+
+// What an object may be fastened to.
+struct Fastening {
+    bool wall = true;    // something of the building is within reach of its top
+    bool floor = false;  // it stands on the floor, and not on a thing
+};
 
 // By object. Brackets and straps at its top reach 0.3 m to a wall, be it seen or behind what hides
 // it, or to what is fixed to one.

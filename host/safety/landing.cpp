@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "objects/taken_along.h"
 #include "physics/landscape.h"
@@ -21,26 +20,19 @@ double support_m(const Body& from) {
 struct Way {
     bool slides = false, easiest = true;
     Vec3 direction{};
-    std::optional<std::pair<Vec3, Vec3>> edge;
+    std::optional<physics::Ends> edge;
     double barrier_J = 0, release_J = 0, drop_m = 0;
 };
 
 Way easiest_way(const Body& from) {
     const physics::Instability& how = from.instability;
-    Way out{how.mode == physics::Instability::Mode::slide,
-            true,
-            how.weakest,
-            {},
-            how.barrier_J,
-            how.release_J,
-            how.drop_m};
-    if (how.edge) out.edge.emplace((*how.edge)[0], (*how.edge)[1]);
-    return out;
+    const bool slides = how.mode == physics::Instability::Mode::slide;
+    return {slides, true, how.weakest, how.edge, how.barrier_J, how.release_J, how.drop_m};
 }
 
 // The easiest one, but one on which it falls where that only comes to lean.
 Way falling_way(const Body& from) {
-    Way out = easiest_way(from);
+    const Way out = easiest_way(from);
     if (out.slides || out.release_J > 0) return out;
     const physics::TippingWay* least = nullptr;
     for (const physics::TippingWay& way : from.tipping.ways)
@@ -49,15 +41,13 @@ Way falling_way(const Body& from) {
             least = &way;
     if (!least) return out;
     const double weight = from.candidate.body.mass_kg * physics::gravity;
-    out = {false,
-           false,
-           least->direction,
-           {},
-           weight * least->climb_m,
-           weight * least->release_m,
-           least->drop_m};
-    if (least->edge) out.edge.emplace((*least->edge)[0], (*least->edge)[1]);
-    return out;
+    return {false,
+            false,
+            least->direction,
+            least->edge,
+            weight * least->climb_m,
+            weight * least->release_m,
+            least->drop_m};
 }
 
 physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls, const Body& from,

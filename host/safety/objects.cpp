@@ -3,29 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "core/random.h"
 #include "core/scan_gaps.h"
-#include "core/short_number.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
 #include "safety/columns.h"
-#include "topple/error.h"
 
 namespace topple::safety {
 
 std::vector<std::int32_t> movable_object_of_cells(const Surroundings& surroundings,
                                                   std::span<const RiskObject> objects) {
-    if (!surroundings.cells || surroundings.object.size() != surroundings.cells->size() ||
-        surroundings.cells->primitive.size() != surroundings.cells->size()) {
-        throw Error(ErrorKind::usage,
-                    "disturbance field: the surroundings need one object and one "
-                    "primitive for each solid cell");
-    }
-    if (surroundings.cells->size() > 0) {
-        check_option("voxel_m", surroundings.cells->voxel_m, 1e-6);
-    }
     std::vector<std::int32_t> out = surroundings.object;
     for (std::int32_t& o : out) {
         const auto at = static_cast<std::size_t>(o);  // of -1 it is beyond all
@@ -144,13 +132,6 @@ double tipping_energy(double mass_kg, double height_m, double half_base_m) {
     const double diagonal = std::hypot(height_m, half_base_m);
     const double rise = diagonal > 0 ? half_base_m * half_base_m / (diagonal + height_m) : 0;
     return mass_kg * physics::gravity * rise;
-}
-
-void check_option(const char* name, double value, double least) {
-    if (std::isfinite(value) && value >= least) return;
-    throw Error(ErrorKind::usage, "disturbance option " + std::string(name) + " is " +
-                                      short_number(value) + ", but must be a number of at least " +
-                                      short_number(least));
 }
 
 // A heap of the arrows with the smallest random keys, the largest of these first.

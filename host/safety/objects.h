@@ -12,7 +12,6 @@
 namespace topple::safety {
 
 // The object of each solid cell, -1 for none and for grounded objects.
-// Throws Error(usage) where `surroundings` has no cells or not one object per cell.
 std::vector<std::int32_t> movable_object_of_cells(const Surroundings& surroundings,
                                                   std::span<const RiskObject> objects);
 
@@ -55,9 +54,6 @@ Profile profile(const RiskObject& object, const MassSpread& stance, const Column
 
 // Energy that lifts the centre of mass over the base's edge: m g (sqrt(h^2 + b^2) - h).
 double tipping_energy(double mass_kg, double height_m, double half_base_m);
-
-// Throws Error(usage) naming the option unless it is finite and not below `least`.
-void check_option(const char* name, double value, double least);
 
 // A uniform sample of at most max_samples of the arrows offered, in their order; its own generator
 // makes it the same every time.

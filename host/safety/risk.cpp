@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "safety/fields.h"
-#include "topple/error.h"
 
 namespace topple::safety {
 
@@ -74,12 +72,6 @@ Risk risk_of(std::span<const WorkSample> work, const RiskObject& object, std::si
 }
 
 std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects) {
-    if (disturbance.work.size() != objects.size()) {
-        throw Error(ErrorKind::usage, "the " + disturbance.name + " field knows " +
-                                          std::to_string(disturbance.work.size()) +
-                                          " objects, but risk is asked for " +
-                                          std::to_string(objects.size()));
-    }
     std::vector<Risk> out(objects.size());
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (objects[o].grounded) continue;
@@ -90,7 +82,6 @@ std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObjec
 
 std::vector<Risk> risk_if(const Disturbance& disturbance, std::span<const RiskObject> changed) {
     Disturbance there;
-    there.name = disturbance.name;
     there.draws = disturbance.draws;
     if (disturbance.work_if) {
         there.work = disturbance.work_if(changed);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "objects/legs.h"
 #include "physics/overturning.h"
@@ -65,7 +64,6 @@ void weigh_risks(std::span<const Body> objects, std::span<const safety::RiskObje
     for (safety::Disturbance& d : out.disturbances) {
         out.risk.push_back(safety::risk(d, at_risk));
         const auto lower = safety::risk_if(d, weaker), higher = safety::risk_if(d, firmer);
-        d.work_if = {};  // it refers to the field
         std::vector<double> error_J;
         for (std::size_t o = 0; o < at_risk.size(); ++o) {
             const double mass_kg = at_risk[o].mass_kg;
@@ -92,22 +90,17 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     SafetyStage out;
     const std::vector<safety::RiskObject> at_risk = risk_objects(objects.objects);
     const safety::Surroundings around = surroundings(parts, objects);
-    std::vector<std::unique_ptr<safety::DisturbanceField>> fields;
     for (const std::string& name : options.disturbances) {
         const safety::DisturbanceKind& kind = safety::disturbance_kind(name);
-        out.disturbances.push_back(stage("field " + name, [&] {
-            fields.push_back(kind.field(device, around, at_risk, options));
-            return fields.back()->disturbance();
-        }));
+        out.disturbances.push_back(
+            stage("field " + name, [&] { return kind.field(device, around, at_risk, options); }));
     }
     stage("falls", [&] {
         out.landings = landings(parts, objects);
         std::vector<safety::FallZone> zones;
         for (const Landing& landing : out.landings) zones.push_back(landing.zone);
-        for (const auto& field : fields) {
-            const std::vector<double> shares = field->passing_shares(zones);
-            if (!shares.empty()) out.people_share = shares;
-        }
+        for (const safety::Disturbance& disturbance : out.disturbances)
+            if (disturbance.passing_shares) out.people_share = disturbance.passing_shares(zones);
     });
     out.gust_m_s = stage("gusts", [&] {
         for (const safety::Disturbance& disturbance : out.disturbances)
@@ -117,8 +110,8 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     stage("risk", [&] { weigh_risks(objects.objects, at_risk, out); });
     stage("advice", [&] {
         out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
-                            out.disturbances, out.risk, fields, options.friction,
-                            options.tolerable_J, unseen_of(parts));
+                            out.disturbances, out.risk, options.friction, options.tolerable_J,
+                            unseen_of(parts));
         const std::vector<Fastening> fastenings = find_fastenings(parts, objects);
         const std::vector<std::int32_t> legs =
             find_legs(*parts.solids, objects.object_of_primitive, objects.objects);
@@ -127,6 +120,11 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
             out.advice[o].leg_of = legs[o];
         }
     });
+    for (safety::Disturbance& disturbance : out.disturbances) {
+        disturbance.work_if = {};
+        disturbance.risk_at = {};
+        disturbance.passing_shares = {};
+    }
     return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "io/text.h"
+#include "safety/earthquake/acceleration_units.h"
 
 namespace topple::io {
 namespace {
@@ -45,6 +46,18 @@ std::optional<Promise> promise_of(std::string_view text) {
     return std::nullopt;
 }
 
+// What names the unit stands beside the word.
+void collect_unit(std::string_view line, std::set<double>& units) {
+    constexpr std::string_view before = "units of";
+    const std::string text = lower_case(line);
+    const auto at = text.find(before);
+    if (at == std::string::npos) return;
+    std::string_view rest = std::string_view(text).substr(at + before.size());
+    std::string_view word = next_token(rest, true);
+    while (word.ends_with('.')) word.remove_suffix(1);
+    if (const auto unit = acceleration_unit_m_s2(word)) units.insert(*unit);
+}
+
 }  // namespace
 
 std::optional<At2Record> read_at2(const std::filesystem::path& file, std::string_view text) {
@@ -54,7 +67,7 @@ std::optional<At2Record> read_at2(const std::filesystem::path& file, std::string
     for (std::string_view line; !promise && lines.next(line);) {
         if (lines.number() > most_header_lines) return std::nullopt;
         promise = promise_of(line);
-        if (!promise) out.header.append(line).append("\n");
+        if (!promise) collect_unit(line, out.units_m_s2);
     }
     if (!promise) return std::nullopt;
     out.step_s = promise->step_s;

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -13,9 +13,9 @@ namespace topple::io {
 // there are and how far apart ("NPTS= 4000, DT= .0050 SEC", or "4000 0.0050 NPTS, DT"), and then
 // the samples, several in a line.
 struct At2Record {
-    std::string header;
     std::vector<double> values;
     double step_s = 0;
+    std::set<double> units_m_s2;  // that its header names
 };
 
 // Nothing where the text begins with no such header. Throws Error(input) where what follows it is

@@ -204,11 +204,6 @@ FieldSamples arrows_below(const SolidCells& solid, std::span<const std::size_t> 
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options) {
-    check_option("pga_m_s2", options.pga_m_s2, 0);
-    check_option("spread", options.spread, 0);
-    check_option("floor_amplification", options.floor_amplification, 0);
-    check_option("friction", friction, 0);
-    if (options.record) check_option("record.step_s", options.record->step_s, 1e-6);
     Disturbance out;
     out.name = earthquake_kind().name;
     out.work.resize(objects.size());

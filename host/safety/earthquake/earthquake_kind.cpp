@@ -46,8 +46,8 @@ const DisturbanceKind& earthquake_kind() {
                 earthquake.record = scaled_record(options);
                 earthquake.floor_amplification = options.floor_amplification;
                 earthquake.hazard = options.hazard;
-                return made_field(
-                    earthquake_field(device, surroundings, objects, options.friction, earthquake));
+                return earthquake_field(device, surroundings, objects, options.friction,
+                                        earthquake);
             },
         .events =
             [](const ParseOptions& options) {

@@ -129,32 +129,13 @@ std::optional<double> only_unit(const fs::path& file, const std::set<double>& un
     return *units.begin();
 }
 
-// What names the unit stands beside the word.
-Raw read_peer(const fs::path& file, io::At2Record record, bool unit_given) {
-    Raw raw;
-    raw.values = std::move(record.values);
-    raw.step_s = record.step_s;
-    std::set<double> units;
-    io::Lines lines(record.header);
-    for (std::string_view line; lines.next(line);) {
-        const std::string text = lower_case(line);
-        const auto at = text.find("units of");
-        if (at == std::string::npos) continue;
-        std::string_view rest = std::string_view(text).substr(at + 8);
-        std::string_view word = io::next_token(rest, true);
-        while (word.ends_with('.')) word.remove_suffix(1);
-        if (const auto unit = io::acceleration_unit_m_s2(word)) units.insert(*unit);
-    }
-    raw.unit_m_s2 = only_unit(file, units, unit_given);
-    return raw;
-}
-
 Raw read_text(const fs::path& file, std::string_view text, bool unit_given) {
     if (text.substr(0, 4096).find('\0') != std::string_view::npos) {
         fail(file, "is neither JSON nor text: it has zero bytes near its start");
     }
     if (auto record = io::read_at2(file, text))
-        return read_peer(file, *std::move(record), unit_given);
+        return {std::move(record->values), record->step_s, 1,
+                only_unit(file, record->units_m_s2, unit_given)};
     Raw raw;
     std::vector<double> times;
     std::vector<std::uint64_t> line_of;

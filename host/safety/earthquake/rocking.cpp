@@ -9,7 +9,6 @@
 #include "device/queue.h"
 #include "physics/landscape.h"
 #include "rocking.hpp"
-#include "topple/error.h"
 
 namespace topple::safety {
 namespace {
@@ -209,9 +208,6 @@ std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodie
     std::vector<Order> order;
     for (std::size_t n = 0; n < shakings.size(); ++n) {
         const Shaking& s = shakings[n];
-        if (s.body >= bodies.size() || s.record >= records.size())
-            throw Error(ErrorKind::usage, "shake: there is no body " + std::to_string(s.body) +
-                                              " or no record " + std::to_string(s.record));
         if (fineness[s.body] < 0) continue;
         const Profile& body = bodies[s.body];
         const double least = std::min(s.grip * friction, body.slenderness());

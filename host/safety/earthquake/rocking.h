@@ -46,8 +46,7 @@ struct Motion {
 // Everything is integrated in steps of the record's own, or so many times shorter that they are at
 // most 0.05 / p of the quickest of its class of bodies, p^2 = g R / (k^2 + R^2), R^2 = b^2 + h^2.
 // Motions are sensitive, as in nature: tests/kernels says of how many the end differs from that of
-// finer steps. Bodies without a height stay as they are. Throws Error(usage) where an index is
-// none.
+// finer steps. Bodies without a height stay as they are.
 std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodies,
                           std::span<const Accelerogram> records, std::span<const Shaking> shakings,
                           double friction);

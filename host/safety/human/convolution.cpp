@@ -93,9 +93,9 @@ Convolution::Convolution(device::Device& device, const WalkableMap& map,
 }
 
 std::uint32_t Convolution::padded(std::size_t map_cell) const {
-    const auto c = static_cast<std::int64_t>(map_cell);
+    const Place at = map_.place(static_cast<std::uint32_t>(map_cell));
     const std::int64_t r = footprint_.radius;
-    return static_cast<std::uint32_t>((c / map_.nx + r + 1) * width_ + c % map_.nx + r);
+    return static_cast<std::uint32_t>((at.y + r + 1) * width_ + at.x + r);
 }
 
 std::vector<float> Convolution::primary(const std::vector<bool>& component) const {
@@ -141,7 +141,7 @@ std::vector<std::uint32_t> Convolution::active_blocks(const std::vector<bool>& c
             walked = motion_.visits[d * map_.size() + c] > 0;
         }
         if (!walked) continue;
-        const std::int64_t x = c % map_.nx, y = c / map_.nx;  // padded: x + r, y + r + 1
+        const auto [x, y] = map_.place(c);  // padded: x + r, y + r + 1
         for (std::int64_t ty = std::max<std::int64_t>(y - r, 0); ty <= std::min(y + r, map_.ny - 1);
              ++ty) {
             for (std::int64_t b = x / block; b <= std::min(x + 2 * r, map_.nx + r - 1) / block;
@@ -279,15 +279,14 @@ void Convolution::offer_arrows(const Tile& tile, double floor_m, ArrowSample& ar
         }
     }
     for (std::uint32_t c = 0; c < tile.cells; ++c) {
-        const std::int64_t at = tile.starts[c / block] + c % block, x = at % width_ - r,
-                           y = at / width_ - r - 1;
-        if (x < 0 || x >= map_.nx || y < 0 || y >= map_.ny) continue;
+        const std::int64_t at = tile.starts[c / block] + c % block;
+        const Place place{at % width_ - r, at / width_ - r - 1};
+        if (!map_.inside(place)) continue;
+        const auto [x, y] = map_.center(place);
         for (unsigned b = 0; b < band_count; ++b) {
             const auto& s = sum[std::size_t{b} * tile.cells + c];
             if (s[2] <= 0) continue;
-            arrows.offer({map_.x0 + (static_cast<double>(x) + 0.5) * map_.cell_m,
-                          map_.y0 + (static_cast<double>(y) + 0.5) * map_.cell_m,
-                          floor_m + (b + 0.5) * band_m_},
+            arrows.offer({x, y, floor_m + (b + 0.5) * band_m_},
                          {double{s[0] / s[2]}, double{s[1] / s[2]}, 0}, double{s[2]});
         }
     }

@@ -10,15 +10,6 @@
 // Straight lines over the cells of the walkable map, as walkers follow them.
 namespace topple::safety {
 
-struct Place {
-    std::int64_t x, y;
-    bool operator==(const Place&) const = default;
-};
-
-inline Place place(const WalkableMap& map, std::uint32_t cell) {
-    return {cell % map.nx, cell / map.nx};
-}
-
 // Calls visit(cell) for the cells of the straight line from a to b, both included, until it returns
 // false; says whether it never did.
 template <class Visit>
@@ -30,7 +21,7 @@ bool along_line(const WalkableMap& map, Place a, Place b, Visit visit) {
     };
     for (std::int64_t s = 0; s <= n; ++s) {
         const std::int64_t x = a.x + (n ? rounded(dx * s) : 0), y = a.y + (n ? rounded(dy * s) : 0);
-        if (!visit(static_cast<std::uint32_t>(y * map.nx + x))) return false;
+        if (!visit(map.index({x, y}))) return false;
     }
     return true;
 }

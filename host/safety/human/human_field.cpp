@@ -18,18 +18,6 @@ namespace {
 // Flesh, clothes and the thing give way by so much when a body is stopped.
 constexpr double stopping_way_m = 0.05;
 
-void check(const HumanOptions& options) {
-    check_option("cell_m", options.cell_m, 1e-3);
-    check_option("body_radius_m", options.body_radius_m, 0);
-    check_option("body_height_m", options.body_height_m, 0.1);
-    check_option("step_height_m", options.step_height_m, 0);
-    check_option("largest_hole_m", options.largest_hole_m, 0);
-    check_option("body_mass_kg", options.body_mass_kg, 0);
-    check_option("walking_speed_m_s", options.walking_speed_m_s, 0);
-    check_option("wander_m", options.wander_m, 0);
-    check_option("restitution", options.restitution, 0);
-}
-
 // Floors at different heights are fields of their own: parts are at heights above the walker's
 // floor.
 struct Level {
@@ -144,114 +132,116 @@ std::vector<WorkSample> strongest_strikes(const Strikes& strikes, const Secondar
     return out;
 }
 
-struct HumanField::Parts {
-    device::Device& device;
-    const Surroundings& surroundings;
-    std::span<const RiskObject> objects;
-    HumanOptions options;
-    std::vector<std::int32_t> object_of_cell;
-    std::vector<Extent> extent;  // by object
-    WalkableMap map;
-    PrimaryMotion primary;
-    SecondaryMotion secondary;
-    std::unique_ptr<Convolution> convolution;  // none: nobody walks
-    std::vector<Level> levels;
+namespace {
+
+// All that the field is made from, and answers questions by.
+class Walkers {
+  public:
+    Walkers(device::Device& device, const Surroundings& surroundings,
+            std::span<const RiskObject> objects, const HumanOptions& options)
+        : surroundings_(surroundings),
+          objects_(objects),
+          options_(options),
+          object_of_cell_(movable_object_of_cells(surroundings, objects)),
+          extent_(extents(*surroundings.cells, object_of_cell_, objects)),
+          secondary_(options.motions.empty() ? table_motion(options) : recorded_motion(options)),
+          map_(walkable_map(surroundings, options)) {
+        if (map_.walkable.empty()) return;
+        primary_ = primary_motion(map_, options);
+        if (primary_.paths == 0) return;
+        convolution_ = std::make_unique<Convolution>(
+            device, map_, primary_, secondary_, surroundings, object_of_cell_, extent_, options_);
+        levels_ = levels(map_, 2 * convolution_->band_m());
+    }
+
+    bool any() const { return convolution_ != nullptr; }
+
+    Disturbance disturbance() {
+        Disturbance out;
+        out.name = human_kind().name;
+        out.work.resize(objects_.size());
+        out.exposure.assign(object_of_cell_.size(), 0.0f);
+        out.notes = map_.notes;
+        out.notes.insert(out.notes.end(), secondary_.notes.begin(), secondary_.notes.end());
+        if (!map_.walkable.empty()) out.walks = drawn_walks(map_, primary_);
+        if (!any()) return out;
+        out.draws = primary_.paths;
+
+        strikes_.assign(objects_.size(), no_strikes(secondary_));
+        ArrowSample arrows;
+        for (const Level& level : levels_)
+            convolution_->add_level(level.floor_m, level.component, strikes_, out.exposure, arrows);
+        out.samples = arrows.take();
+        out.work = work_if(objects_);
+        out.strongest.resize(objects_.size());
+        for (std::size_t o = 0; o < objects_.size(); ++o) {
+            for (const WorkSample& strike : out.work[o]) {
+                const double force = strike.W_J / stopping_way_m;
+                if (force > out.strongest[o].force_N) out.strongest[o] = {force, strike.height_m};
+            }
+        }
+        return out;
+    }
+
+    std::vector<std::vector<WorkSample>> work_if(std::span<const RiskObject> objects) const {
+        std::vector<std::vector<WorkSample>> work;
+        for (std::size_t o = 0; o < objects.size(); ++o)
+            work.push_back(strongest_strikes(strikes_[o], secondary_, objects[o], extent_[o],
+                                             options_.restitution));
+        return work;
+    }
+
+    std::vector<Risk> risk_at(std::span<const Placement> placements) {
+        const auto cells = cells_of_objects(object_of_cell_, objects_.size());
+        std::vector<Strikes> strikes(placements.size(), no_strikes(secondary_));
+        for (const Level& level : levels_)
+            convolution_->add_placements(level.floor_m, level.component, cells, placements,
+                                         strikes);
+        std::vector<Risk> out;
+        for (std::size_t n = 0; n < placements.size(); ++n) {
+            const Placement& at = placements[n];
+            const auto work = strongest_strikes(strikes[n], secondary_, at.there,
+                                                extent_[at.object], options_.restitution);
+            out.push_back(risk_of(work, at.there, primary_.paths));
+        }
+        return out;
+    }
+
+    std::vector<double> shares_passing(std::span<const FallZone> zones) const {
+        return passing_shares(map_, primary_, Columns(*surroundings_.cells), options_, zones);
+    }
+
+  private:
+    const Surroundings& surroundings_;
+    std::span<const RiskObject> objects_;
+    HumanOptions options_;
+    std::vector<std::int32_t> object_of_cell_;
+    std::vector<Extent> extent_;  // by object
+    SecondaryMotion secondary_;
+    WalkableMap map_;
+    PrimaryMotion primary_;
+    std::unique_ptr<Convolution> convolution_;  // none: nobody walks
+    std::vector<Level> levels_;
+    std::vector<Strikes> strikes_;  // by object
 };
 
-HumanField::HumanField(device::Device& device, const Surroundings& surroundings,
-                       std::span<const RiskObject> objects, const HumanOptions& options)
-    : parts_(new Parts{device,
-                       surroundings,
-                       objects,
-                       options,
-                       movable_object_of_cells(surroundings, objects),
-                       {},
-                       {},
-                       {},
-                       {},
-                       {},
-                       {}}) {
-    check(options);
-    Parts& p = *parts_;
-    p.extent = extents(*surroundings.cells, p.object_of_cell, objects);
-    p.secondary = p.options.motions.empty() ? table_motion(p.options) : recorded_motion(p.options);
-    p.map = walkable_map(surroundings, p.options);
-    if (p.map.walkable.empty()) return;
-    p.primary = primary_motion(p.map, p.options);
-    if (p.primary.paths == 0) return;
-    p.convolution = std::make_unique<Convolution>(
-        device, p.map, p.primary, p.secondary, surroundings, p.object_of_cell, p.extent, p.options);
-    p.levels = levels(p.map, 2 * p.convolution->band_m());
-}
-
-HumanField::~HumanField() = default;
-
-Disturbance HumanField::disturbance() {
-    Parts& p = *parts_;
-    Disturbance out;
-    out.name = human_kind().name;
-    out.work.resize(p.objects.size());
-    out.exposure.assign(p.object_of_cell.size(), 0.0f);
-    out.notes = p.map.notes;
-    out.notes.insert(out.notes.end(), p.secondary.notes.begin(), p.secondary.notes.end());
-    if (!p.map.walkable.empty()) out.walks = drawn_walks(p.map, p.primary);
-    if (!p.convolution) return out;
-    out.draws = p.primary.paths;
-
-    std::vector<Strikes> strikes(p.objects.size(), no_strikes(p.secondary));
-    ArrowSample arrows;
-    for (const Level& level : p.levels)
-        p.convolution->add_level(level.floor_m, level.component, strikes, out.exposure, arrows);
-    out.strongest.resize(p.objects.size());
-    for (std::size_t o = 0; o < p.objects.size(); ++o) {
-        out.work[o] = strongest_strikes(strikes[o], p.secondary, p.objects[o], p.extent[o],
-                                        p.options.restitution);
-        for (const WorkSample& strike : out.work[o]) {
-            const double force = strike.W_J / stopping_way_m;
-            if (force > out.strongest[o].force_N) out.strongest[o] = {force, strike.height_m};
-        }
-    }
-    SecondaryMotion strength;  // what of it tells the work
-    strength.mass_kg = p.secondary.mass_kg;
-    strength.energy_J = p.secondary.energy_J;
-    out.work_if = [strikes = std::move(strikes), strength, extent = p.extent,
-                   restitution = p.options.restitution](std::span<const RiskObject> changed) {
-        std::vector<std::vector<WorkSample>> work;
-        for (std::size_t o = 0; o < changed.size(); ++o)
-            work.push_back(
-                strongest_strikes(strikes[o], strength, changed[o], extent[o], restitution));
-        return work;
-    };
-    out.samples = arrows.take();
-    return out;
-}
-
-std::vector<Risk> HumanField::risk_at(std::span<const Placement> placements) {
-    Parts& p = *parts_;
-    std::vector<Risk> out(placements.size());
-    if (!p.convolution) return out;
-    const auto cells = cells_of_objects(p.object_of_cell, p.objects.size());
-    std::vector<Strikes> strikes(placements.size(), no_strikes(p.secondary));
-    for (const Level& level : p.levels)
-        p.convolution->add_placements(level.floor_m, level.component, cells, placements, strikes);
-    for (std::size_t n = 0; n < out.size(); ++n) {
-        const auto work = strongest_strikes(strikes[n], p.secondary, placements[n].there,
-                                            p.extent[placements[n].object], p.options.restitution);
-        out[n] = risk_of(work, placements[n].there, p.primary.paths);
-    }
-    return out;
-}
-
-std::vector<double> HumanField::passing_shares(std::span<const FallZone> zones) {
-    const Parts& p = *parts_;
-    if (p.map.walkable.empty()) return {};
-    return safety::passing_shares(p.map, p.primary, Columns(*p.surroundings.cells), p.options,
-                                  zones);
-}
+}  // namespace
 
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,
                         std::span<const RiskObject> objects, const HumanOptions& options) {
-    return HumanField(device, surroundings, objects, options).disturbance();
+    const auto walkers = std::make_shared<Walkers>(device, surroundings, objects, options);
+    Disturbance out = walkers->disturbance();
+    if (!walkers->any()) return out;
+    out.work_if = [walkers](std::span<const RiskObject> changed) {
+        return walkers->work_if(changed);
+    };
+    out.risk_at = [walkers](std::span<const Placement> placements) {
+        return walkers->risk_at(placements);
+    };
+    out.passing_shares = [walkers](std::span<const FallZone> zones) {
+        return walkers->shares_passing(zones);
+    };
+    return out;
 }
 
 }  // namespace topple::safety

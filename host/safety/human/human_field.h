@@ -32,24 +32,9 @@ inline constexpr unsigned max_shown_paths = 100;  // walks whose way the report 
 // table of body parts (body_parts.h) the secondary; their convolution (kernels disturbance_reach,
 // disturbance) the passes of each part through each cell per walk. W is what a thing of mass M
 // takes over of m v^2 / 2 of the part (5.2): (1 + e)^2 m M / (m + M)^2 of it. One event is one
-// walk. Nothing walkable, no object: an empty field, and a note that says why.
-class HumanField : public DisturbanceField {
-  public:
-    HumanField(device::Device& device, const Surroundings& surroundings,
-               std::span<const RiskObject> objects, const HumanOptions& options);
-    ~HumanField() override;
-
-    Disturbance disturbance() override;
-    // Walkers keep to their paths, and everything else, the object where it stood included, stays
-    // in their way.
-    std::vector<Risk> risk_at(std::span<const Placement> placements) override;
-    std::vector<double> passing_shares(std::span<const FallZone> zones) override;
-
-  private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
-};
-
+// walk. Nothing walkable, no object: an empty field, and a note that says why. Asked what elsewhere
+// would be, walkers keep to their paths, and everything else, the object where it stood included,
+// stays in their way.
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,
                         std::span<const RiskObject> objects, const HumanOptions& options);
 

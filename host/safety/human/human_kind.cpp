@@ -24,15 +24,15 @@ const DisturbanceKind& human_kind() {
                              .scale = 100,
                              .unit = "times in 100 walks"},
                   .figure = {"walks", "", "walks", ""}},
-        .field = [](device::Device& device, const Surroundings& surroundings,
-                    std::span<const RiskObject> objects,
-                    const ParseOptions& options) -> std::unique_ptr<DisturbanceField> {
-            HumanOptions human;
-            human.seed = options.seed;
-            human.paths = options.walks;
-            human.motions = options.motions;
-            return std::make_unique<HumanField>(device, surroundings, objects, human);
-        },
+        .field =
+            [](device::Device& device, const Surroundings& surroundings,
+               std::span<const RiskObject> objects, const ParseOptions& options) {
+                HumanOptions human;
+                human.seed = options.seed;
+                human.paths = options.walks;
+                human.motions = options.motions;
+                return human_field(device, surroundings, objects, human);
+            },
         .events =
             [](const ParseOptions& options) {
                 return std::map<std::string, double>{{"walks", options.walks}};

@@ -75,9 +75,8 @@ class Reached {
                  index(zone.from[1] + furthest, map_.y0, map_.ny)};
         for (std::int64_t y = low_.y; y <= high_.y; ++y) {
             for (std::int64_t x = low_.x; x <= high_.x; ++x) {
-                const auto cell = static_cast<std::uint32_t>(y * map_.nx + x);
-                if (map_.component[cell] < 0 || !meets(columns, options, zone, x, y, cell))
-                    continue;
+                const std::uint32_t cell = map_.index({x, y});
+                if (map_.component[cell] < 0 || !meets(columns, options, zone, cell)) continue;
                 reached_[cell] = true;
                 cells_.push_back(cell);
             }
@@ -89,7 +88,7 @@ class Reached {
     // Whether a walk with such corners passes any of the cells.
     bool passed_by(const std::vector<std::uint32_t>& corners) const {
         for (std::size_t leg = 1; leg < corners.size(); ++leg) {
-            const Place a = place(map_, corners[leg - 1]), b = place(map_, corners[leg]);
+            const Place a = map_.place(corners[leg - 1]), b = map_.place(corners[leg]);
             if (std::max(a.x, b.x) < low_.x || std::min(a.x, b.x) > high_.x ||
                 std::max(a.y, b.y) < low_.y || std::min(a.y, b.y) > high_.y)
                 continue;
@@ -101,14 +100,13 @@ class Reached {
 
   private:
     bool meets(const Columns& columns, const HumanOptions& options, const FallZone& zone,
-               std::int64_t x, std::int64_t y, std::uint32_t cell) const {
+               std::uint32_t cell) const {
         const double floor = map_.floor_m[cell];
         if (floor >= zone.highest_m || floor + options.body_height_m <= zone.lowest_m) return false;
-        const double at_x = map_.x0 + (static_cast<double>(x) + 0.5) * map_.cell_m;
-        const double at_y = map_.y0 + (static_cast<double>(y) + 0.5) * map_.cell_m;
-        const auto to = nearest(zone, at_x, at_y);
-        return std::hypot(to[0] - at_x, to[1] - at_y) <= passing_reach_m &&
-               in_sight(columns, options, floor, at_x, at_y, to);
+        const auto [x, y] = map_.center(map_.place(cell));
+        const auto to = nearest(zone, x, y);
+        return std::hypot(to[0] - x, to[1] - y) <= passing_reach_m &&
+               in_sight(columns, options, floor, x, y, to);
     }
 
     const WalkableMap& map_;

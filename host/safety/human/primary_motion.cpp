@@ -74,7 +74,7 @@ class PathFinder {
     };
 
     std::uint64_t to_go(std::uint32_t from, std::uint32_t goal) const {
-        const Place a = place(map_, from), b = place(map_, goal);
+        const Place a = map_.place(from), b = map_.place(goal);
         const auto dx = static_cast<std::uint64_t>(std::abs(a.x - b.x));
         const auto dy = static_cast<std::uint64_t>(std::abs(a.y - b.y));
         return diagonal * std::min(dx, dy) + straight * (std::max(dx, dy) - std::min(dx, dy));
@@ -89,13 +89,12 @@ class PathFinder {
     }
 
     void expand(std::uint32_t cell, std::uint32_t goal) {
-        const Place at = place(map_, cell);
+        const Place at = map_.place(cell);
         for (std::int64_t dy = -1; dy <= 1; ++dy) {
             for (std::int64_t dx = -1; dx <= 1; ++dx) {
                 const Place to{at.x + dx, at.y + dy};
-                if (to == at || to.x < 0 || to.y < 0 || to.x >= map_.nx || to.y >= map_.ny)
-                    continue;
-                const auto next = static_cast<std::uint32_t>(to.y * map_.nx + to.x);
+                if (to == at || !map_.inside(to)) continue;
+                const std::uint32_t next = map_.index(to);
                 if (!can_step(map_, cell, next, step_m_)) continue;
                 reach(next, cell, nodes_[cell].cost + (dx && dy ? diagonal : straight), goal);
             }
@@ -104,7 +103,7 @@ class PathFinder {
 
     bool walkable_line(std::uint32_t a, std::uint32_t b) const {
         std::uint32_t last = a;
-        return along_line(map_, place(map_, a), place(map_, b), [&](std::uint32_t cell) {
+        return along_line(map_, map_.place(a), map_.place(b), [&](std::uint32_t cell) {
             const bool ok = can_step(map_, last, cell, step_m_);
             last = cell;
             return ok;
@@ -141,7 +140,7 @@ PrimaryMotion primary_motion(const WalkableMap& map, const HumanOptions& options
         const std::uint32_t goal = others[random.below(others.size())];
         auto corners = finder.straightened(finder.shortest(start, goal));
         for (std::size_t leg = 1; leg < corners.size(); ++leg) {
-            const Place a = place(map, corners[leg - 1]), b = place(map, corners[leg]);
+            const Place a = map.place(corners[leg - 1]), b = map.place(corners[leg]);
             const unsigned heading =
                 nearest_direction(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y));
             const unsigned back = (heading + direction_count / 2) % direction_count;
@@ -178,10 +177,8 @@ Walks drawn_walks(const WalkableMap& map, const PrimaryMotion& motion) {
     for (std::size_t walk = 0; walk < shown; ++walk) {
         std::vector<Vec3> path;
         for (const std::uint32_t c : motion.corners[walk]) {
-            const Place at = place(map, c);
-            path.push_back({map.x0 + (static_cast<double>(at.x) + 0.5) * map.cell_m,
-                            map.y0 + (static_cast<double>(at.y) + 0.5) * map.cell_m,
-                            double{map.floor_m[c]}});
+            const auto [x, y] = map.center(map.place(c));
+            path.push_back({x, y, double{map.floor_m[c]}});
         }
         out.paths.push_back(std::move(path));
     }

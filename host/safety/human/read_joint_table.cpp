@@ -24,16 +24,6 @@ std::vector<std::string_view> split(std::string_view line) {
     return out;
 }
 
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-std::string lower(std::string_view text) {
-    std::string out;
-    for (const char c : text) out += lower(c);
-    return out;
-}
-
 // Which columns hold which joint, and the times.
 struct Layout {
     std::size_t columns = 0, time = none;
@@ -49,7 +39,7 @@ Layout layout_of(const std::filesystem::path& file, const std::vector<std::strin
     Layout out;
     out.columns = head.size();
     for (std::size_t c = 0; c < head.size(); ++c) {
-        const std::string name = lower(head[c]);
+        const std::string name = lower_case(head[c]);
         if (name == "time" || name == "t" || name == "timestamp" || name == "seconds") {
             out.time = c;
             continue;

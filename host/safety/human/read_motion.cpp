@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/ranked.h"
+#include "core/vectors.h"
 #include "io/text.h"
 #include "safety/human/motion_formats.h"
 #include "topple/motion.h"
@@ -81,14 +82,10 @@ void stand_up(BodyMotion& motion, const Vec3& up) {
     const Vec3 z{up[0] / length, up[1] / length, up[2] / length};
     // Some axis across: the heading is found from the body itself.
     Vec3 x = std::abs(z[0]) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const double along = x[0] * z[0] + x[1] * z[1] + x[2] * z[2];
-    for (std::size_t c = 0; c < 3; ++c) x[c] -= along * z[c];
+    x = along(x, -dot(x, z), z);
     const double across = std::hypot(x[0], x[1], x[2]);
     for (double& c : x) c /= across;
-    const Vec3 y{z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]};
-    const auto dot = [](const Vec3& a, const Vec3& b) {
-        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    };
+    const Vec3 y = cross(z, x);
     for (auto& track : motion.track) {
         for (Vec3& p : track) p = {dot(p, x), dot(p, y), dot(p, z)};
     }

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/short_number.h"
+#include "core/vectors.h"
 #include "physics/directions.h"
 #include "safety/human/body_parts.h"
 #include "safety/human/human_field.h"
@@ -108,7 +109,7 @@ void visit_frame(const PosedBody& body, std::size_t f, const HumanOptions& optio
         }
     };
     const auto between = [](const Vec3& a, const Vec3& b, double t) {
-        return Vec3{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
+        return along(a, t, minus(b, a));
     };
     const auto steps = [](const Vec3& a, const Vec3& b) {
         const double length = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

@@ -16,20 +16,16 @@ namespace {
 
 constexpr float no_floor = -std::numeric_limits<float>::infinity();
 
-struct Offset {
-    std::int64_t x, y;
-};
-
 // Offsets of the cells whose centres lie within the radius (in cells), nearest first.
-std::vector<Offset> disc(double radius) {
-    std::vector<Offset> out;
+std::vector<Place> disc(double radius) {
+    std::vector<Place> out;
     const auto r = static_cast<std::int64_t>(std::floor(radius + 1e-9));
     for (std::int64_t y = -r; y <= r; ++y) {
         for (std::int64_t x = -r; x <= r; ++x) {
             if (static_cast<double>(x * x + y * y) <= radius * radius + 1e-9) out.push_back({x, y});
         }
     }
-    std::stable_sort(out.begin(), out.end(), [](const Offset& a, const Offset& b) {
+    std::stable_sort(out.begin(), out.end(), [](const Place& a, const Place& b) {
         return a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y;
     });
     return out;
@@ -76,33 +72,24 @@ void scan_floor(WalkableMap& map, const Surroundings& s) {
 // Closing by a disc: a cell without floor becomes floor unless some disc of the hole's radius
 // around a cell near it meets no floor at all. Returns which cells are floor.
 std::vector<bool> bridge_holes(WalkableMap& map, double hole_m) {
-    const std::vector<Offset> reach = disc(hole_m / 2 / map.cell_m);
+    const std::vector<Place> reach = disc(hole_m / 2 / map.cell_m);
     const std::size_t n = map.size();
     std::vector<bool> scanned(n), near_floor(n);
-    const auto inside = [&](std::int64_t x, std::int64_t y) {
-        return x >= 0 && y >= 0 && x < map.nx && y < map.ny;
-    };
     for (std::size_t c = 0; c < n; ++c) scanned[c] = map.floor_m[c] != no_floor;
-    for (std::int64_t y = 0; y < map.ny; ++y) {
-        for (std::int64_t x = 0; x < map.nx; ++x) {
-            near_floor[static_cast<std::size_t>(y * map.nx + x)] =
-                std::any_of(reach.begin(), reach.end(), [&](const Offset& o) {
-                    return inside(x + o.x, y + o.y) &&
-                           scanned[static_cast<std::size_t>((y + o.y) * map.nx + x + o.x)];
-                });
-        }
-    }
+    // Of all within reach of cell c, whether it is one of those.
+    const auto reached = [&](const std::vector<bool>& those, std::size_t c) {
+        return [&map, &those, from = map.place(static_cast<std::uint32_t>(c))](const Place& away) {
+            const Place to{from.x + away.x, from.y + away.y};
+            return map.inside(to) && those[map.index(to)];
+        };
+    };
+    for (std::size_t c = 0; c < n; ++c)
+        near_floor[c] = std::ranges::any_of(reach, reached(scanned, c));
     std::vector<bool> floor = scanned;
-    for (std::int64_t y = 0; y < map.ny; ++y) {
-        for (std::int64_t x = 0; x < map.nx; ++x) {
-            const auto c = static_cast<std::size_t>(y * map.nx + x);
-            if (scanned[c] || !near_floor[c]) continue;
-            floor[c] = std::all_of(reach.begin(), reach.end(), [&](const Offset& o) {
-                return inside(x + o.x, y + o.y) &&
-                       near_floor[static_cast<std::size_t>((y + o.y) * map.nx + x + o.x)];
-            });
-            map.bridged += floor[c];
-        }
+    for (std::size_t c = 0; c < n; ++c) {
+        if (scanned[c] || !near_floor[c]) continue;
+        floor[c] = std::ranges::all_of(reach, reached(near_floor, c));
+        map.bridged += floor[c];
     }
     return floor;
 }
@@ -115,13 +102,11 @@ void spread_floor(WalkableMap& map) {
         if (map.floor_m[c] != no_floor) queue.push_back(static_cast<std::uint32_t>(c));
     }
     for (std::size_t at = 0; at < queue.size(); ++at) {
-        const std::int64_t c = queue[at], x = c % map.nx;
-        for (const std::int64_t to :
-             {x > 0 ? c - 1 : -1, x + 1 < map.nx ? c + 1 : -1, c - map.nx, c + map.nx}) {
-            if (to < 0 || to >= map.nx * map.ny) continue;
-            if (map.floor_m[static_cast<std::size_t>(to)] != no_floor) continue;
-            map.floor_m[static_cast<std::size_t>(to)] = map.floor_m[static_cast<std::size_t>(c)];
-            queue.push_back(static_cast<std::uint32_t>(to));
+        const auto [x, y] = map.place(queue[at]);
+        for (const Place& to : {Place{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}}) {
+            if (!map.inside(to) || map.floor_m[map.index(to)] != no_floor) continue;
+            map.floor_m[map.index(to)] = map.floor_m[queue[at]];
+            queue.push_back(map.index(to));
         }
     }
 }
@@ -154,16 +139,15 @@ void find_components(WalkableMap& map, const std::vector<bool>& walkable, double
         map.component[start] = map.components;
         queue.assign(1, static_cast<std::uint32_t>(start));
         for (std::size_t at = 0; at < queue.size(); ++at) {
-            const std::int64_t x = queue[at] % map.nx, y = queue[at] / map.nx;
-            for (std::int64_t ty = std::max<std::int64_t>(y - 1, 0);
-                 ty <= std::min(y + 1, map.ny - 1); ++ty) {
-                for (std::int64_t tx = std::max<std::int64_t>(x - 1, 0);
-                     tx <= std::min(x + 1, map.nx - 1); ++tx) {
-                    const auto to = static_cast<std::size_t>(ty * map.nx + tx);
+            const auto [x, y] = map.place(queue[at]);
+            for (std::int64_t dy = -1; dy <= 1; ++dy) {
+                for (std::int64_t dx = -1; dx <= 1; ++dx) {
+                    if (!map.inside({x + dx, y + dy})) continue;
+                    const std::uint32_t to = map.index({x + dx, y + dy});
                     if (!walkable[to] || map.component[to] >= 0) continue;
                     if (std::fabs(map.floor_m[to] - map.floor_m[queue[at]]) > step_m) continue;
                     map.component[to] = map.components;
-                    queue.push_back(static_cast<std::uint32_t>(to));
+                    queue.push_back(to);
                 }
             }
         }
@@ -208,15 +192,12 @@ WalkableMap walkable_map(const Surroundings& surroundings, const HumanOptions& o
     spread_floor(map);
     const std::vector<bool> shut = obstacles(map, surroundings, options);
     std::vector<bool> walkable = floor;
-    const std::vector<Offset> body = disc(options.body_radius_m / map.cell_m);
-    for (std::int64_t y = 0; y < map.ny; ++y) {
-        for (std::int64_t x = 0; x < map.nx; ++x) {
-            if (!shut[static_cast<std::size_t>(y * map.nx + x)]) continue;
-            for (const Offset& o : body) {
-                if (x + o.x < 0 || y + o.y < 0 || x + o.x >= map.nx || y + o.y >= map.ny) continue;
-                walkable[static_cast<std::size_t>((y + o.y) * map.nx + x + o.x)] = false;
-            }
-        }
+    const std::vector<Place> body = disc(options.body_radius_m / map.cell_m);
+    for (std::size_t c = 0; c < map.size(); ++c) {
+        if (!shut[c]) continue;
+        const auto [x, y] = map.place(static_cast<std::uint32_t>(c));
+        for (const Place& o : body)
+            if (map.inside({x + o.x, y + o.y})) walkable[map.index({x + o.x, y + o.y})] = false;
     }
     find_components(map, walkable, std::max(options.step_height_m, map.voxel_m) + 1e-4);
     if (map.bridged > 0) {

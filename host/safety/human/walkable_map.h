@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -10,6 +11,12 @@
 
 // Where people can walk and where they do (paper, 5.1.2, primary motion). Grid frame.
 namespace topple::safety {
+
+// Place of a cell of the map, or beside it.
+struct Place {
+    std::int64_t x, y;
+    bool operator==(const Place&) const = default;
+};
 
 // Cell (x, y) spans (x0, y0) + [x, x + 1] x [y, y + 1] * cell_m; its index is y * nx + x.
 struct WalkableMap {
@@ -23,6 +30,14 @@ struct WalkableMap {
     std::vector<std::string> notes;
 
     std::size_t size() const { return static_cast<std::size_t>(nx * ny); }
+    bool inside(const Place& p) const { return p.x >= 0 && p.y >= 0 && p.x < nx && p.y < ny; }
+    std::uint32_t index(const Place& p) const { return static_cast<std::uint32_t>(p.y * nx + p.x); }
+    Place place(std::uint32_t cell) const { return {cell % nx, cell / nx}; }
+    // Its middle, metres.
+    std::array<double, 2> center(const Place& p) const {
+        return {x0 + (static_cast<double>(p.x) + 0.5) * cell_m,
+                y0 + (static_cast<double>(p.y) + 0.5) * cell_m};
+    }
     // The map's cell under the voxel column (i, j); voxels are at most as wide as map cells.
     std::size_t cell_of(std::int32_t i, std::int32_t j) const;
     // Whether that column is on the map.

@@ -12,7 +12,6 @@
 #include "safety/columns.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
-#include "topple/error.h"
 
 namespace topple::safety {
 namespace {
@@ -147,9 +146,7 @@ std::vector<std::array<double, 2>> ways(const WindOptions& options) {
         const double angle = *options.from_deg * std::numbers::pi / 180;
         return {{exact(-std::sin(angle)), exact(-std::cos(angle))}};
     }
-    std::vector<std::array<double, 2>> all;
-    for (unsigned d = 0; d < direction_count; ++d) all.push_back(direction(d));
-    return all;
+    return {directions().begin(), directions().end()};
 }
 
 // Of wind that blows along `way`, onto an object's front.
@@ -266,15 +263,8 @@ std::vector<double> tipping_gusts(device::Device& device, const Surroundings& su
 
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        std::span<const RiskObject> objects, const WindOptions& options) {
-    check_option("speed_m_s", options.speed_m_s, 0);
-    check_option("air_density_kg_m3", options.air_density_kg_m3, 0);
-    check_option("drag_coefficient", options.drag_coefficient, 0);
-    check_option("friction", options.friction, 0);
-    check_option("shelter_m", options.shelter_m, 0);
     Disturbance out;
     out.name = wind_kind().name;
-    if (options.from_deg && !std::isfinite(*options.from_deg))
-        throw Error(ErrorKind::usage, "disturbance option from_deg is not a number");
     const std::vector<std::array<double, 2>> blown = ways(options);
     const auto directions = static_cast<float>(blown.size());
     out.draws = blown.size();

@@ -30,7 +30,7 @@ const DisturbanceKind& wind_kind() {
                 wind.speed_m_s = options.wind_m_s;
                 wind.from_deg = options.wind_from_deg;
                 wind.friction = options.friction;
-                return made_field(wind_field(device, surroundings, objects, wind));
+                return wind_field(device, surroundings, objects, wind);
             },
         .events =
             [](const ParseOptions& options) {

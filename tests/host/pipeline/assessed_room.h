@@ -17,6 +17,8 @@ struct AssessedRoom {
     SolidScene solids;
     std::vector<Body> objects;
     std::vector<safety::RiskObject> at_risk;
+    SolidParts parts;
+    ObjectStage stage;
 
     AssessedRoom(device::Device& device, Room& room, double friction)
         : around(room.surroundings()),
@@ -54,7 +56,11 @@ struct AssessedRoom {
         }
         find_barriers(device, hulls, solids, {}, room.object_of_primitive, friction, objects);
         at_risk = risk_objects(objects);
+        parts.solids = {&solids, [](const SolidScene*) {}};
+        stage.objects = objects;
+        stage.object_of_primitive = room.object_of_primitive;
     }
+    AssessedRoom(const AssessedRoom&) = delete;
 };
 
 }  // namespace topple::test

@@ -12,41 +12,58 @@
 namespace topple {
 namespace {
 
+// What is said of object 0, beside object 1, whose primitive 0 is part of the building.
+struct Said {
+    Body body;
+    ObjectStage objects;
+    Scene scene;
+    Role role = Role::wall;
+    std::vector<Landing> landings = std::vector<Landing>(2);
+
+    Said() {
+        body.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        scene.voxel_size_m = 0.02;
+        scene.objects.resize(2);
+        scene.objects[0].id = 0;
+        scene.objects[1].id = 1;
+        scene.primitives.resize(2);
+        scene.primitives[0].object = 1;
+        scene.primitives[1].object = 0;
+        objects.object_of_primitive = {1, 0};
+    }
+    std::string sentence() {
+        objects.objects = {body, Body{}};
+        const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+        explain(objects, ToInput(axes), scene);
+        SolidParts parts;
+        parts.solids =
+            std::make_shared<const SolidScene>(SolidCells{}, std::vector<Role>{role, Role::none});
+        write_reasons(parts, objects, landings, scene);
+        return scene.objects[0].why.sentence;
+    }
+};
+
 // An object whose centre of mass lies 0.25 m west of what carries it, with the given barrier; where
 // it is stopped on its way, by object 1.
 std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped = false,
                                 bool building = false,
                                 const std::vector<InstabilityStep>& steps = {}) {
-    Body from;
-    from.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    from.tipping.margin_m = -0.25;
-    from.instability.mode = physics::Instability::Mode::tip;
-    from.instability.weakest = {-1, 0, 0};
-    from.instability.edge = physics::Ends{Vec3{0, 0, 0}, Vec3{0, 1, 0}};
-    ObjectStage objects;
-    objects.objects = {from, Body{}};
-    Scene scene;
-    scene.voxel_size_m = 0.02;
-    scene.objects.resize(2);
-    scene.objects[1].id = 1;
-    scene.objects[1].grounded = building;
-    scene.primitives.resize(1);
-    scene.primitives[0].object = 1;
-    scene.objects[0].fall.hits_J = 0.004;
-    scene.objects[0].barrier_J = barrier_J;
-    scene.objects[0].barrier_error_J = error_J;
-    scene.objects[0].release_J = steps.empty() ? 300 : 0;
-    scene.objects[0].instability = steps;
-    scene.objects[0].mode = "tip";
-    const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    explain(objects, ToInput(axes), scene);
-    std::vector<Landing> landings(2);
-    landings[0].easiest.stopped = stopped;
-    landings[0].easiest.by = stopped ? 0 : -1;
-    SolidParts parts;
-    parts.solids = std::make_shared<const SolidScene>(SolidCells{}, std::vector<Role>{Role::wall});
-    write_reasons(parts, objects, landings, scene);
-    return scene.objects[0].why.sentence;
+    Said said;
+    said.body.tipping.margin_m = -0.25;
+    said.body.instability.mode = physics::Instability::Mode::tip;
+    said.body.instability.weakest = {-1, 0, 0};
+    said.body.instability.edge = physics::Ends{Vec3{0, 0, 0}, Vec3{0, 1, 0}};
+    said.scene.objects[1].grounded = building;
+    Object& object = said.scene.objects[0];
+    object.fall.hits_J = 0.004;
+    object.barrier_J = barrier_J;
+    object.barrier_error_J = error_J;
+    object.release_J = steps.empty() ? 300 : 0;
+    object.instability = steps;
+    object.mode = "tip";
+    said.landings[0].easiest.stopped = stopped;
+    said.landings[0].easiest.by = stopped ? 0 : -1;
+    return said.sentence();
 }
 
 TEST(Explain, what_takes_energy_to_go_does_not_fall_as_it_stands) {
@@ -92,40 +109,26 @@ TEST(Explain, what_the_wall_stops_tells_of_the_harder_way_first) {
 // Floors of scans are not quite level: what slides on one does not fall off it.
 TEST(Explain, what_slides_on_the_floor_falls_off_no_floor) {
     const auto sentence_of_slide = [](double drop_m) {
-        Body chair;
-        chair.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-        chair.tipping.margin_m = 0.25;
-        chair.instability.mode = physics::Instability::Mode::slide;
-        chair.instability.weakest = {1, 0, 0};
-        chair.instability.drop_m = drop_m;
-        chair.instability.onto = 0;
-        chair.sliding.distance_m = 0.12;
-        ObjectStage objects;
-        objects.objects = {chair, Body{}};
-        objects.object_of_primitive = {1, 0};
+        Said said;
+        said.role = Role::floor;
+        said.body.tipping.margin_m = 0.25;
+        said.body.instability.mode = physics::Instability::Mode::slide;
+        said.body.instability.weakest = {1, 0, 0};
+        said.body.instability.drop_m = drop_m;
+        said.body.instability.onto = 0;
+        said.body.sliding.distance_m = 0.12;
         graph::Carrying on_floor;
         on_floor.supporter = 0;
         on_floor.supported = 1;
         on_floor.area_m2 = 0.1;
-        objects.contacts.carryings = {on_floor};
-        Scene scene;
-        scene.objects.resize(2);
-        scene.objects[0].id = 0;
-        scene.objects[1].id = 1;
-        scene.objects[1].grounded = true;
-        scene.objects[0].why.stands_on = {1};
-        scene.objects[0].mode = "slide";
-        scene.objects[0].barrier_J = 5;
-        scene.objects[0].release_J = 2;
-        scene.primitives.resize(2);
-        scene.primitives[0].object = 1;
-        const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-        explain(objects, ToInput(axes), scene);
-        SolidParts parts;
-        parts.solids = std::make_shared<const SolidScene>(
-            SolidCells{}, std::vector<Role>{Role::floor, Role::none});
-        write_reasons(parts, objects, std::vector<Landing>(2), scene);
-        return scene.objects[0].why.sentence;
+        said.objects.contacts.carryings = {on_floor};
+        said.scene.objects[1].grounded = true;
+        Object& chair = said.scene.objects[0];
+        chair.why.stands_on = {1};
+        chair.mode = "slide";
+        chair.barrier_J = 5;
+        chair.release_J = 2;
+        return said.sentence();
     };
     EXPECT_EQ(
         sentence_of_slide(0.04),
@@ -137,66 +140,62 @@ TEST(Explain, what_slides_on_the_floor_falls_off_no_floor) {
         "releases 2.0 J.");
 }
 
+// What is advised of an object of 20 kg that must be held by so much at this height.
+std::string fixing(
+    const safety::Push& hold,
+    const std::function<void(Object&, Suggestion&)>& but = [](Object&, Suggestion&) {}) {
+    Scene scene;
+    scene.objects.resize(2);
+    scene.objects[1].id = 1;
+    Object& object = scene.objects[0];
+    object.mass_kg = 20;
+    object.risk_J = {{"earthquake", 1}};
+    std::vector<Suggestion> suggestions(2);
+    suggestions[0].kind = Suggestion::Kind::fix;
+    suggestions[0].hold = hold;
+    but(object, suggestions[0]);
+    write_advice(suggestions, scene);
+    return object.advice.sentence;
+}
+
 // A fixing's force, in what straps are sold by.
 TEST(Explain, straps_are_told_by_what_they_carry) {
-    Scene scene;
-    scene.objects.resize(4);
-    std::vector<Suggestion> suggestions(4);
-    const std::array force_N{3.61, 97.2, 99.0, 0.0};
-    for (std::size_t o = 0; o < 4; ++o) {
-        scene.objects[o].mass_kg = 20;
-        scene.objects[o].risk_J = {{"earthquake", 1}};
-        suggestions[o].kind = Suggestion::Kind::fix;
-        suggestions[o].hold = {force_N[o], 1.5};
-    }
-    write_advice(suggestions, scene);
-    const auto told = [&](std::size_t o) { return scene.objects[o].advice.sentence; };
-    EXPECT_EQ(told(0),
+    EXPECT_EQ(fixing({3.61, 1.5}),
               "Fasten it to the wall or to what carries it, with a strap or bracket rated for 1 kg "
               "or more (it must hold 3.7 N sideways at least, without a margin), at its top, 1.5 m "
               "above what it stands on.");
-    EXPECT_NE(told(1).find("rated for 10 kg or more (it must hold 98 N"), std::string::npos)
-        << told(1);
-    EXPECT_NE(told(2).find("rated for 20 kg"), std::string::npos) << told(2);
-    EXPECT_EQ(told(3), "Fasten it to the wall or to what carries it.");
+    EXPECT_THAT(fixing({97.2, 1.5}),
+                testing::HasSubstr("rated for 10 kg or more (it must hold 98 N"));
+    EXPECT_THAT(fixing({99, 1.5}), testing::HasSubstr("rated for 20 kg"));
+    EXPECT_EQ(fixing({0, 1.5}), "Fasten it to the wall or to what carries it.");
 }
 
 // What one asks before one fastens it: against what, to what, and with how many brackets.
 TEST(Explain, a_fixing_is_told_with_its_reason_and_what_it_goes_to) {
-    Scene scene;
-    scene.objects.resize(3);
-    std::vector<Suggestion> suggestions(3);
-    for (std::size_t o = 0; o < 3; ++o) {
-        scene.objects[o].id = static_cast<std::int32_t>(o);
-        scene.objects[o].mass_kg = 20;
-        scene.objects[o].risk_J = {{"earthquake", 1}};
-        scene.objects[o].size_m = {0.4, 1.9, 1.7};
-        suggestions[o].kind = Suggestion::Kind::fix;
-        suggestions[o].hold = {154, 1.7};
-        suggestions[o].hold_against = "human";
-    }
-    suggestions[1].fasten = {.wall = false, .floor = true};
-    scene.objects[2].mass_kg = 2;
-    suggestions[2].leg_of = 1;
-    write_advice(suggestions, scene);
-    const auto told = [&](std::size_t o) { return scene.objects[o].advice.sentence; };
-    EXPECT_EQ(told(0),
+    const auto of_shelf = [](const Fastening& to, double mass_kg = 20, std::int32_t leg_of = -1) {
+        return fixing({154, 1.7}, [&](Object& shelf, Suggestion& what) {
+            shelf.size_m = {0.4, 1.9, 1.7};
+            shelf.mass_kg = mass_kg;
+            what.hold_against = "human";
+            what.fasten = to;
+            what.leg_of = leg_of;
+        });
+    };
+    EXPECT_EQ(of_shelf({}),
               "Fasten it to the wall or to what carries it, with two straps or brackets, at studs "
               "of the wall, each rated for 20 kg or more (together they must hold 154 N sideways "
               "at least, the push of a person who walks into it, without a margin), at its top, "
               "1.7 m above what it stands on.");
-    EXPECT_EQ(told(1),
+    EXPECT_EQ(of_shelf({.wall = false, .floor = true}),
               "Bolt it to the floor, keep people away, or take it out: at its top, 1.7 m above "
               "what it stands on, it must be held against 154 N sideways at least, the push of a "
               "person who walks into it, without a margin.");
-    EXPECT_TRUE(told(2).starts_with(
-        "Look first: this may be a leg of object 1. If it is none: fasten it, with two straps"))
-        << told(2);
+    EXPECT_THAT(of_shelf({}, 2, 1),
+                testing::StartsWith("Look first: this may be a leg of object 1. If it is none: "
+                                    "fasten it, with two straps"));
     // On a table, away from walls.
-    suggestions[1].fasten = {.wall = false, .floor = false};
-    write_advice(suggestions, scene);
-    EXPECT_TRUE(told(1).starts_with("Fasten it to what carries it, with a strap or bracket rated"))
-        << told(1);
+    EXPECT_THAT(of_shelf({.wall = false, .floor = false}),
+                testing::StartsWith("Fasten it to what carries it, with a strap or bracket rated"));
 }
 
 }  // namespace
@@ -214,26 +213,19 @@ class Advice : public ::testing::Test {
         scene = std::make_unique<AssessedRoom>(*device, room, advice_friction);
         safety::HumanOptions walking;
         walking.paths = 200;
-        std::vector<std::unique_ptr<safety::DisturbanceField>> walkers;
-        walkers.push_back(
-            std::make_unique<safety::HumanField>(*device, scene->around, scene->at_risk, walking));
-        std::vector<safety::Disturbance> fields;
-        fields.push_back(walkers.front()->disturbance());
-        fields.push_back(safety::wind_field(*device, scene->around, scene->at_risk, {}));
-        fields.push_back(
-            safety::earthquake_field(*device, scene->around, scene->at_risk, advice_friction, {}));
+        const std::vector<safety::Disturbance> fields{
+            safety::human_field(*device, scene->around, scene->at_risk, walking),
+            safety::wind_field(*device, scene->around, scene->at_risk, {}),
+            safety::earthquake_field(*device, scene->around, scene->at_risk, advice_friction, {})};
         risk.clear();
         for (const auto& field : fields) risk.push_back(safety::risk(field, scene->at_risk));
         return advise(scene->solids, room.object_of_primitive, scene->objects, scene->at_risk,
-                      fields, risk, walkers, advice_friction, advice_tolerable_J);
+                      fields, risk, advice_friction, advice_tolerable_J);
     }
     double worst(std::int32_t id) const {
         double most = 0;
         for (const auto& field : risk) most = std::max(most, field[id].mean_J);
         return most;
-    }
-    static const Suggestion& at(const std::vector<Suggestion>& all, std::int32_t id) {
-        return all[id];
     }
 
     std::unique_ptr<device::Device> device = device::open_native(2);
@@ -253,7 +245,7 @@ TEST_F(Advice, WhatIsAtAnEdgeIsMovedInwardsToWhereItIsTolerated) {
     const auto box = box_on_table(room, 0.575);
     const auto advice = of(room);
     ASSERT_GT(worst(box), advice_tolerable_J);
-    const Suggestion& what = at(advice, box);
+    const Suggestion& what = advice[box];
     ASSERT_EQ(what.kind, Suggestion::Kind::move);
     EXPECT_LT(what.move_m[0], -0.05) << "away from the edge at x = 0.8";
     EXPECT_LT(std::hypot(what.move_m[0], what.move_m[1]), 0.9);
@@ -270,7 +262,7 @@ TEST_F(Advice, WhatIsSafeIsLeftAlone) {
     const auto box = box_on_table(room, -0.1);
     const auto advice = of(room);
     EXPECT_LE(worst(box), advice_tolerable_J);
-    EXPECT_EQ(at(advice, box).kind, Suggestion::Kind::nothing);
+    EXPECT_EQ(advice[box].kind, Suggestion::Kind::nothing);
 }
 
 TEST_F(Advice, ATallThinThingIsFixedAndTheFixingHoldsIt) {
@@ -278,7 +270,7 @@ TEST_F(Advice, ATallThinThingIsFixedAndTheFixingHoldsIt) {
     const auto post = room.box(0, 0.15, 0, 0.15, 0, 1.5, false);
     const auto advice = of(room);
     ASSERT_GT(worst(post), advice_tolerable_J);
-    const Suggestion& what = at(advice, post);
+    const Suggestion& what = advice[post];
     ASSERT_EQ(what.kind, Suggestion::Kind::fix) << "shaking tips it anywhere";
     EXPECT_NEAR(what.hold.height_m, 1.5, 0.03);
     // 23.6 kg at up to 3 e m/s^2 tip it by (a h - g b) m over its height.
@@ -292,7 +284,7 @@ TEST_F(Advice, WhatHangsOnNothingSeenIsToBeSeen) {
     const auto lamp = room.box(0, 0.2, 0, 0.2, 1.5, 1.7, false);
     const auto advice = of(room);
     EXPECT_EQ(worst(lamp), 0);
-    EXPECT_EQ(at(advice, lamp).kind, Suggestion::Kind::see);
+    EXPECT_EQ(advice[lamp].kind, Suggestion::Kind::see);
 }
 
 // What is said to upset it would have done so before it was scanned.

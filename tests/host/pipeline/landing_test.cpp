@@ -4,7 +4,6 @@
 #include "assessed_room.h"
 #include "clouds.h"
 #include "device/devices.h"
-#include "host/pipeline/assessed_room.h"
 #include "host/pipeline/scan.h"
 #include "lab/solids/ray_caster.h"
 #include "objects/legs.h"
@@ -20,17 +19,13 @@ class Landings : public ::testing::Test {
   protected:
     std::vector<Landing> of(Room& room) {
         scene = std::make_unique<AssessedRoom>(*device, room, 0.3);
-        SolidParts parts;
-        parts.solids = std::shared_ptr<const SolidScene>(&scene->solids, [](const SolidScene*) {});
-        ObjectStage objects;
-        objects.objects = scene->objects;
-        objects.object_of_primitive = room.object_of_primitive;
-        return landings(parts, objects);
+        return landings(scene->parts, scene->stage);
     }
     std::vector<double> shares(const std::vector<Landing>& landings) {
         std::vector<safety::FallZone> zones;
         for (const Landing& landing : landings) zones.push_back(landing.zone);
-        return safety::HumanField(*device, scene->around, scene->at_risk, {}).passing_shares(zones);
+        return safety::human_field(*device, scene->around, scene->at_risk, {})
+            .passing_shares(zones);
     }
     std::unique_ptr<device::Device> device = device::open_native(2);
     std::unique_ptr<AssessedRoom> scene;
@@ -174,13 +169,8 @@ Fastening fastening(bool wall, double wall_m = 0.2) {
     Room room(0.025, {-2, -2}, {2, 2});
     if (wall) room.box(0.4 + wall_m, 0.7 + wall_m, -1, 1, 0, 2.5);
     const auto shelf = static_cast<std::size_t>(room.box(0, 0.4, -0.5, 0.5, 0, 1.8, false));
-    AssessedRoom scene(*device, room, 0.3);
-    SolidParts parts;
-    parts.solids = std::shared_ptr<const SolidScene>(&scene.solids, [](const SolidScene*) {});
-    ObjectStage objects;
-    objects.objects = scene.objects;
-    objects.object_of_primitive = room.object_of_primitive;
-    return find_fastenings(parts, objects)[shelf];
+    const AssessedRoom scene(*device, room, 0.3);
+    return find_fastenings(scene.parts, scene.stage)[shelf];
 }
 
 TEST(Fastenings, AreToWallsWithinReach) {

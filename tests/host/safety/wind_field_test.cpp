@@ -7,7 +7,6 @@
 #include "safety/columns.h"
 #include "safety/objects.h"
 #include "testing.h"
-#include "topple/error.h"
 
 namespace topple::safety {
 namespace {
@@ -165,7 +164,6 @@ TEST_F(WindField, OneWindComesFromWhereItIsSaidTo) {
         EXPECT_NEAR(field.work[cup][0].direction[1], -std::cos(angle), 1e-12) << degrees;
     }
     EXPECT_TRUE(from(90).work[cup].empty()) << "in the lee";
-    EXPECT_THROW(from(std::nan("")), Error);
     // The mean over the 16 directions is the field without one.
     const auto mean = [&](const Disturbance& field) {
         double sum = 0;
@@ -187,9 +185,6 @@ TEST_F(WindField, NothingInTheWind) {
     const auto field = wind_field(*device, room.surroundings(), room.objects, {});
     EXPECT_TRUE(field.work[0].empty());
     EXPECT_TRUE(field.notes.empty());
-    WindOptions bad;
-    bad.speed_m_s = -1;
-    EXPECT_THROW(wind_field(*device, room.surroundings(), room.objects, bad), Error);
 }
 
 }  // namespace
