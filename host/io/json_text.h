@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/json.h"
+#include "io/open_file.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -54,6 +55,24 @@ inline Json parse_json(const std::filesystem::path& file, std::string_view text,
         return Json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::exception& error) {
         fail(file, std::string(problem) + ": " + json_problem(error));
+    }
+}
+
+// use(document) of a file that topple wrote. Throws Error(input) that names it where it is missing,
+// of another schema, or lacks what `use` looks for; what: "scene.json".
+template <class Use>
+auto read_document(const FileName& name, const std::string& what, const std::string& schema,
+                   const Use& use) {
+    const std::filesystem::path& file = name.path();
+    const FileBytes bytes = read_file(name);
+    const std::string_view text = bytes.text();
+    check_json_nesting(file, text);
+    try {
+        const auto json = OrderedJson::parse(text.begin(), text.end());
+        if (json.at("schema") != schema) fail(file, "its schema is not " + schema);
+        return use(json);
+    } catch (const nlohmann::json::exception& error) {
+        fail(file, "is no " + what + ": " + json_problem(error));
     }
 }
 

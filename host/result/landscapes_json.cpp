@@ -35,12 +35,6 @@ Json rounded_vector(const Vec3& v) {
     return json;
 }
 
-Json rounded_vectors(const std::vector<Vec3>& all) {
-    auto json = Json::array();
-    for (const Vec3& v : all) json.push_back(rounded_vector(v));
-    return json;
-}
-
 // A line, of which points that are one after rounding are written once.
 Json rounded_line(const std::vector<Vec3>& all) {
     auto json = Json::array();
@@ -66,25 +60,24 @@ Json places_json(const Landscape::Places& places) {
 
 Json landscape_json(const Object& object) {
     const Landscape& l = object.landscape;
-    auto poses = Json::array(), passes = Json::array();
-    for (const Landscape::Pose& pose : l.poses) {
-        poses.push_back({{"up", rounded_vector(pose.up)},
-                         {"energy_J", rounded_number(pose.energy_J)},
-                         {"joins_at_J", rounded_number(pose.joins_at_J)},
-                         {"joins", pose.joins},
-                         {"probability", rounded_number(pose.probability)}});
-    }
-    for (const Landscape::Pass& pass : l.passes) {
-        passes.push_back({{"up", rounded_vector(pass.up)},
-                          {"energy_J", rounded_number(pass.energy_J)},
-                          {"poses", pass.poses},
-                          {"border", rounded_line(pass.border)}});
-    }
+    const auto pose_json = [](const Landscape::Pose& pose) {
+        return Json{{"up", rounded_vector(pose.up)},
+                    {"energy_J", rounded_number(pose.energy_J)},
+                    {"joins_at_J", rounded_number(pose.joins_at_J)},
+                    {"joins", pose.joins},
+                    {"probability", rounded_number(pose.probability)}};
+    };
+    const auto pass_json = [](const Landscape::Pass& pass) {
+        return Json{{"up", rounded_vector(pass.up)},
+                    {"energy_J", rounded_number(pass.energy_J)},
+                    {"poses", pass.poses},
+                    {"border", rounded_line(pass.border)}};
+    };
     return {{"id", object.id},
-            {"hull_m", rounded_vectors(l.hull_m)},
+            {"hull_m", list(l.hull_m, rounded_vector)},
             {"now", l.now},
-            {"poses", std::move(poses)},
-            {"passes", std::move(passes)},
+            {"poses", list(l.poses, pose_json)},
+            {"passes", list(l.passes, pass_json)},
             {"places", places_json(l.places)}};
 }
 
@@ -173,22 +166,14 @@ void write_landscapes_json(const std::filesystem::path& file, const Scene& scene
 
 void read_landscapes_json(const FileName& name, Scene& scene) {
     const std::filesystem::path& file = name.path();
-    const auto bytes = read_file(name);
-    const auto text = bytes.text();
-    check_json_nesting(file, text);
-    try {
-        const auto json = Json::parse(text.begin(), text.end());
-        if (json.at("schema") != landscapes_schema)
-            fail(file, "its schema is not " + std::string(landscapes_schema));
+    read_document(name, "landscapes.json", landscapes_schema, [&](const Json& json) {
         for (const Json& object : json.at("objects")) {
             const auto id = object.at("id").get<std::int64_t>();
             if (id < 0 || id >= static_cast<std::int64_t>(scene.objects.size()))
                 fail(file, "is of another scene: it has an object " + std::to_string(id));
             scene.objects[id].landscape = landscape_of(object, file);
         }
-    } catch (const Json::exception& error) {
-        fail(file, "is no landscapes.json: " + json_problem(error));
-    }
+    });
 }
 
 }  // namespace topple::io

@@ -182,21 +182,11 @@ void write_scene_json(const std::filesystem::path& file, const Scene& scene) {
 }
 
 Scene read_scene_json(const FileName& name) {
-    const std::filesystem::path& file = name.path();
-    const auto bytes = read_file(name);
-    const auto text = bytes.text();
-    check_json_nesting(file, text);
-    try {
-        const auto json = Json::parse(text.begin(), text.end());
-        if (json.at("schema") != scene_schema) {
-            fail(file, "its schema is not " + std::string(scene_schema));
-        }
+    return read_document(name, "scene.json", scene_schema, [&](const Json& json) {
         Scene scene = item_of<Scene>(json);
-        check_scene(scene, file);
+        check_scene(scene, name.path());
         return scene;
-    } catch (const Json::exception& error) {
-        fail(file, "is no scene.json: " + json_problem(error));
-    }
+    });
 }
 
 }  // namespace topple::io

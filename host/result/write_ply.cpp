@@ -25,8 +25,9 @@ class Record {
             bytes_[size_++] = bytes[big ? sizeof(T) - 1 - i : i];
         }
     }
-    void colour(std::int32_t object) {
-        for (const auto channel : colour_of(object)) put(channel);
+    template <class Values>
+    void put_all(const Values& values) {
+        for (const auto value : values) put(value);
     }
     void write_to(FileWriter& writer) {
         writer.write(bytes_, size_);
@@ -45,7 +46,7 @@ void check_lengths(const char* what, std::size_t size, const Arrays&... arrays) 
     }
 }
 
-std::string header(std::size_t count, const std::string& properties, bool coloured = false) {
+std::string header(std::uint64_t count, const std::string& properties, bool coloured = false) {
     return "ply\nformat binary_little_endian 1.0\ncomment written by topple; metres, -1 = "
            "unassigned\n"
            "element vertex " +
@@ -63,42 +64,33 @@ std::string header(std::size_t count, const std::string& properties, bool colour
 void write_points_ply(const std::filesystem::path& file, const ScenePoints& points) {
     const auto count = points.x.size();
     check_lengths("points.ply", count, points.y, points.z, points.primitive, points.object);
-    const bool normals = !points.nx.empty();
+    const bool normals = !points.nx.empty(), coloured = !points.red.empty();
     if (normals) check_lengths("points.ply", count, points.nx, points.ny, points.nz);
-
-    const bool coloured = !points.red.empty();
     if (coloured) check_lengths("points.ply", count, points.red, points.green, points.blue);
 
-    FileWriter writer(file);
-    writer.write(header(count,
-                        normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
-                        coloured));
-    Record record;
+    PointsPlyWriter writer(file, count, coloured, normals);
     for (std::size_t i = 0; i < count; ++i) {
-        for (const float value : {points.x[i], points.y[i], points.z[i]}) record.put(value);
-        record.put(points.primitive[i]);
-        record.put(points.object[i]);
-        if (normals) {
-            for (const float value : {points.nx[i], points.ny[i], points.nz[i]}) record.put(value);
-        }
-        if (coloured) {
-            for (const auto channel : {points.red[i], points.green[i], points.blue[i]})
-                record.put(channel);
-        }
-        record.colour(points.object[i]);
-        record.write_to(writer);
+        Rgb8 own{};
+        std::array<float, 3> normal{};
+        if (coloured) own = {points.red[i], points.green[i], points.blue[i]};
+        if (normals) normal = {points.nx[i], points.ny[i], points.nz[i]};
+        writer.add({points.x[i], points.y[i], points.z[i]}, points.primitive[i], points.object[i],
+                   own, normal);
     }
     writer.close();
 }
 
 PointsPlyWriter::PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count,
-                                 bool coloured)
-    : own_colours_(coloured), path_(file), writer_(file), left_(count) {
-    writer_.write(header(count, "", coloured));
+                                 bool coloured, bool normals)
+    : own_colours_(coloured), normals_(normals), path_(file), writer_(file), left_(count) {
+    writer_.write(header(count,
+                         normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+                         coloured));
 }
 
 void PointsPlyWriter::add(const std::array<float, 3>& point, std::int32_t primitive,
-                          std::int32_t object, const Rgb8& own) {
+                          std::int32_t object, const Rgb8& own,
+                          const std::array<float, 3>& normal) {
     if (left_ == 0) fail(path_, "more points come than were announced");
     --left_;
     if (object != coloured_) {
@@ -106,13 +98,12 @@ void PointsPlyWriter::add(const std::array<float, 3>& point, std::int32_t primit
         colour_ = colour_of(object);
     }
     Record record;
-    for (const float value : point) record.put(value);
+    record.put_all(point);
     record.put(primitive);
     record.put(object);
-    if (own_colours_) {
-        for (const std::uint8_t channel : own) record.put(channel);
-    }
-    for (const std::uint8_t channel : colour_) record.put(channel);
+    if (normals_) record.put_all(normal);
+    if (own_colours_) record.put_all(own);
+    record.put_all(colour_);
     record.write_to(writer_);
 }
 
@@ -130,11 +121,11 @@ void write_solid_ply(const std::filesystem::path& file, const SolidVoxels& voxel
     writer.write(header(count, "property uchar state\n"));
     Record record;
     for (std::size_t i = 0; i < count; ++i) {
-        for (const float value : {voxels.x[i], voxels.y[i], voxels.z[i]}) record.put(value);
+        record.put_all(std::array{voxels.x[i], voxels.y[i], voxels.z[i]});
         record.put(voxels.primitive[i]);
         record.put(voxels.object[i]);
         record.put(voxels.state[i]);
-        record.colour(voxels.object[i]);
+        record.put_all(colour_of(voxels.object[i]));
         record.write_to(writer);
     }
     writer.close();

@@ -20,18 +20,19 @@ namespace topple::io {
 // scan without colours those by object are red green blue.
 void write_points_ply(const std::filesystem::path& file, const ScenePoints& points);
 
-// points.ply without normals, of `count` points that come one by one, with colours of their own or
-// not. Throws Error(input), too, where more or fewer come.
+// The same of `count` points that come one by one. Throws Error(input), too, where more or fewer
+// come.
 class PointsPlyWriter {
   public:
-    PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count, bool coloured = false);
+    PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count, bool coloured = false,
+                    bool normals = false);
     // own: the point's colour in the scan, where there are any.
     void add(const std::array<float, 3>& point, std::int32_t primitive, std::int32_t object,
-             const Rgb8& own = {});
+             const Rgb8& own = {}, const std::array<float, 3>& normal = {});
     void close();
 
   private:
-    bool own_colours_;
+    bool own_colours_, normals_;
     std::filesystem::path path_;
     FileWriter writer_;
     std::uint64_t left_;
