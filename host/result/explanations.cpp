@@ -18,17 +18,16 @@ void explain(const ObjectStage& objects, const ToInput& to_input, Scene& scene) 
         const Body& from = objects.objects[o];
         Object& object = scene.objects[o];
         Why& why = object.why;
-        if (!from.grounded) {
-            const physics::Instability& step = from.instability;
-            if (step.weakest != Vec3{}) why.azimuth_deg = azimuth_deg(step.weakest);
-            if (step.edge) why.edge_m = {to_input((*step.edge)[0]), to_input((*step.edge)[1])};
-            why.W_J = object.barrier_J;
-            why.S_J = object.release_J;
-            if (object.mode == "slide") why.way_m = from.sliding.distance_m;
-            why.drop_m = step.drop_m;
-            if (step.drop_m > 0 && step.onto >= 0)
-                why.lands_on = objects.object_of_primitive[static_cast<std::size_t>(step.onto)];
-        }
+        if (from.grounded) continue;
+        const physics::Instability& step = from.instability;
+        if (step.weakest != Vec3{}) why.azimuth_deg = azimuth_deg(step.weakest);
+        if (step.edge) why.edge_m = {to_input((*step.edge)[0]), to_input((*step.edge)[1])};
+        why.W_J = object.barrier_J;
+        why.S_J = object.release_J;
+        if (object.mode == "slide") why.way_m = from.sliding.distance_m;
+        why.drop_m = step.drop_m;
+        if (step.drop_m > 0 && step.onto >= 0)
+            why.lands_on = objects.object_of_primitive[static_cast<std::size_t>(step.onto)];
     }
 }
 

@@ -58,85 +58,82 @@ std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primi
     }
 }
 
-class Sentence {
-  public:
-    Sentence(const Scene& scene, const SolidParts& parts, const ObjectStage& objects,
-             const physics::Swept& swept, std::size_t o)
-        : scene_(scene),
-          parts_(parts),
-          objects_(objects),
-          swept_(swept),
-          from_(objects.objects[o]),
-          object_(scene.objects[o]),
-          why_(object_.why) {}
+struct Sentence {
+    const Scene& scene;
+    const SolidParts& parts;
+    const ObjectStage& objects;
+    const physics::Swept& swept;
+    std::size_t o;
+    const Body& from = objects.objects[o];
+    const Object& object = scene.objects[o];
+    const Why& why = object.why;
 
     std::string text() const {
-        if (object_.grounded) {
+        if (object.grounded) {
             return "It is counted as the building, or as fixed to it, and is not judged here: what "
                    "of it is furniture has to be told.";
         }
-        if (!from_.seen_enough()) {
+        if (!from.seen_enough()) {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
         }
-        return (object_.mode == "slide" ? slides() : tips()) + foot() + piece() + several();
+        return (object.mode == "slide" ? slides() : tips()) + foot() + piece() + several();
     }
 
-  private:
     // Which is more than what was seen of it.
     std::string foot() const {
-        return from_.unseen_margin_m > 0 && barrier_within_error(object_)
+        return from.unseen_margin_m > 0 && barrier_within_error(object)
                    ? " Part of its foot, as a leg, may stand where nobody saw in."
                    : "";
     }
     // Whose figures are those of a piece.
     std::string piece() const {
-        if (object_.piece_of < 0) return "";
-        const Object& whole = scene_.objects[object_.piece_of];
+        if (object.piece_of < 0) return "";
+        const Object& whole = scene.objects[object.piece_of];
         return " It may be a piece of " + numbered_object(whole) + " (" +
-               io::two_digits(100 * object_.piece_probability) + " % likely).";
+               io::two_digits(100 * object.piece_probability) + " % likely).";
     }
     // Whose figures are those of two together.
     std::string several() const {
-        if (!from_.weakest.doubtful()) return "";
-        return " It may be two things (" + io::two_digits(100 * (1 - object_.joint_probability)) +
-               " % likely): look whether its parts " + std::to_string(object_.weakest_joint[0]) +
-               " and " + std::to_string(object_.weakest_joint[1]) + " are one.";
+        if (!from.weakest.doubtful()) return "";
+        return " It may be two things (" + io::two_digits(100 * (1 - object.joint_probability)) +
+               " % likely): look whether its parts " + std::to_string(object.weakest_joint[0]) +
+               " and " + std::to_string(object.weakest_joint[1]) + " are one.";
     }
     std::string slides() const {
-        if (!(why_.way_m > 0)) {
+        if (!(why.way_m > 0)) {
             return "Its centre of mass is past the edge of what carries it: it falls " + dropped() +
-                   " and releases " + energy(why_.S_J) + ".";
+                   " and releases " + energy(why.S_J) + ".";
         }
         const std::string off = carrier();
-        if (off == floor && what(scene_, parts_, from_.instability.onto) == floor &&
-            why_.drop_m < step_m) {
+        if (off == floor && what(scene, parts, from.instability.onto) == floor &&
+            why.drop_m < step_m) {
             return "Slides " + to() + "on the floor at " + barrier() + ", over " +
-                   length(why_.way_m) + ", to where it stands " + length(why_.drop_m) +
-                   " lower, and releases " + energy(why_.S_J) + ".";
+                   length(why.way_m) + ", to where it stands " + length(why.drop_m) +
+                   " lower, and releases " + energy(why.S_J) + ".";
         }
         return "Slides " + to() + "off " + off + " at " + barrier() + ", over " +
-               length(why_.way_m) + "; falls " + dropped() + " and releases " + energy(why_.S_J) +
+               length(why.way_m) + "; falls " + dropped() + " and releases " + energy(why.S_J) +
                ".";
     }
     std::string tips() const {
-        const bool stands = from_.tipping.margin_m > 0;
+        const bool stands = from.tipping.margin_m > 0;
         std::string text;
-        if (!why_.edge_m.empty() && !stands && why_.W_J > 0) {
+        if (!why.edge_m.empty() && !stands && why.W_J > 0) {
             // It would come to rest no lower there: the first step that releases is another one.
-            text = "Its centre of mass is " + length(-from_.tipping.margin_m) +
+            text = "Its centre of mass is " + length(-from.tipping.margin_m) +
                    " beyond the edge of what is seen to carry it, but falling there it would rest "
                    "no lower. Tips over its " +
                    edge() + " at " + barrier();
-        } else if (!why_.edge_m.empty() && !stands) {
+        } else if (!why.edge_m.empty() && !stands) {
             text = "Falls " + to() + "as it stands: its centre of mass is " +
-                   length(-from_.tipping.margin_m) + " beyond the edge of what carries it";
-        } else if (!why_.edge_m.empty()) {
+                   length(-from.tipping.margin_m) + " beyond the edge of what carries it";
+        } else if (!why.edge_m.empty()) {
             text = "Tips over its " + edge() + " at " + barrier();
         } else {
             text = "Rolls or turns " + to() + "by itself";
         }
-        if (!(object_.release_J > 0)) {
+        if (!(object.release_J > 0)) {
             text += stopped_for_good() ? ", but leans on " + stop() + " before it has come so far"
                                        : ", but then rests no lower";
             text += ": it releases nothing.";
@@ -144,77 +141,68 @@ class Sentence {
             if (harder.empty()) return text;
             return harder + io::lower_case(text.substr(0, 1)) + text.substr(1);
         }
-        if (swept_.stopped) return text + leans();
-        return text + "; " + (why_.drop_m > 0 ? "falls " + dropped() : "comes to rest lower") +
-               " and releases " + energy(why_.S_J) + ".";
+        if (swept.stopped) return text + leans();
+        return text + "; " + (why.drop_m > 0 ? "falls " + dropped() : "comes to rest lower") +
+               " and releases " + energy(why.S_J) + ".";
     }
     // What more energy sets free, which its risk reckons with, before the easiest way.
     std::string harder_way() const {
         const auto first = std::ranges::find_if(
-            object_.instability, [](const InstabilityStep& step) { return step.S_J > 0; });
-        if (first == object_.instability.end()) return "";
+            object.instability, [](const InstabilityStep& step) { return step.S_J > 0; });
+        if (first == object.instability.end()) return "";
         return "With " + energy(first->W_J) + " or more it may fall and release up to " +
-               energy(object_.instability.back().S_J) + ". The easiest way: ";
+               energy(object.instability.back().S_J) + ". The easiest way: ";
     }
     // By the building, which does not give way.
     bool stopped_for_good() const {
-        if (!swept_.stopped || swept_.by < 0) return false;
-        const std::int32_t by = scene_.primitives[swept_.by].object;
-        return scene_.objects[by].grounded;
+        if (!swept.stopped || swept.by < 0) return false;
+        const std::int32_t by = scene.primitives[swept.by].object;
+        return scene.objects[by].grounded;
     }
-    std::string stop() const { return what(scene_, parts_, swept_.by); }
+    std::string stop() const { return what(scene, parts, swept.by); }
     // Against anything else its release and risk are those of a fall with room.
     std::string leans() const {
         std::string text =
-            "; comes to lean on " + stop() + ", with " + energy(object_.fall.hits_J) + ".";
+            "; comes to lean on " + stop() + ", with " + energy(object.fall.hits_J) + ".";
         if (stopped_for_good()) return text;
         return text + " If that gave way it would " +
-               (why_.drop_m > 0 ? "fall " + dropped() : "come to rest lower") + " and release " +
-               energy(why_.S_J) + ", which its risk reckons with.";
+               (why.drop_m > 0 ? "fall " + dropped() : "come to rest lower") + " and release " +
+               energy(why.S_J) + ", which its risk reckons with.";
     }
     // What it slides off. Of the building the part that carries most of it.
     std::string carrier() const {
-        if (why_.stands_on.size() != 1) return "what carries it";
-        const Object& on = scene_.objects[why_.stands_on[0]];
+        if (why.stands_on.size() != 1) return "what carries it";
+        const Object& on = scene.objects[why.stands_on[0]];
         if (!on.grounded) return numbered_object(on);
         const auto object_of = [&](std::int32_t p) {
-            return p < 0 ? -1 : objects_.object_of_primitive[p];
+            return p < 0 ? -1 : objects.object_of_primitive[p];
         };
         const graph::Carrying* most = nullptr;
-        for (const graph::Carrying& c : objects_.contacts.carryings) {
-            if (object_of(c.supported) == object_.id && object_of(c.supporter) == on.id &&
+        for (const graph::Carrying& c : objects.contacts.carryings) {
+            if (object_of(c.supported) == object.id && object_of(c.supporter) == on.id &&
                 (!most || c.area_m2 > most->area_m2))
                 most = &c;
         }
-        return most ? what(scene_, parts_, most->supporter) : "what carries it";
+        return most ? what(scene, parts, most->supporter) : "what carries it";
     }
     std::string barrier() const {
-        if (!barrier_within_error(object_)) return energy(why_.W_J);
-        return "between 0 and " + energy(object_.barrier_J + object_.barrier_error_J);
+        if (!barrier_within_error(object)) return energy(why.W_J);
+        return "between 0 and " + energy(object.barrier_J + object.barrier_error_J);
     }
     std::string to() const {
-        return std::isnan(why_.azimuth_deg) ? "" : "to the " + compass(why_.azimuth_deg) + " ";
+        return std::isnan(why.azimuth_deg) ? "" : "to the " + compass(why.azimuth_deg) + " ";
     }
     // An edge no longer than a voxel or two is a corner, or one of a round thing's many.
     std::string edge() const {
-        const std::string side =
-            std::isnan(why_.azimuth_deg) ? "" : compass(why_.azimuth_deg) + " ";
-        const Vec3 &a = why_.edge_m[0], &b = why_.edge_m[1];
+        const std::string side = std::isnan(why.azimuth_deg) ? "" : compass(why.azimuth_deg) + " ";
+        const Vec3 &a = why.edge_m[0], &b = why.edge_m[1];
         const double size = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-        if (size <= 2.5 * scene_.voxel_size_m) return side + "rim";
+        if (size <= 2.5 * scene.voxel_size_m) return side + "rim";
         return side + "edge, " + length(size) + " long,";
     }
     std::string dropped() const {
-        return length(why_.drop_m) + " to " + what(scene_, parts_, from_.instability.onto);
+        return length(why.drop_m) + " to " + what(scene, parts, from.instability.onto);
     }
-
-    const Scene& scene_;
-    const SolidParts& parts_;
-    const ObjectStage& objects_;
-    const physics::Swept& swept_;
-    const Body& from_;
-    const Object& object_;
-    const Why& why_;
 };
 
 constexpr double light_kg = 5;  // one carries it away rather than fastens it
@@ -309,7 +297,7 @@ void write_reasons(const SolidParts& parts, const ObjectStage& objects,
     const physics::Swept free{};
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         const physics::Swept& swept = o < landings.size() ? landings[o].easiest : free;
-        scene.objects[o].why.sentence = Sentence(scene, parts, objects, swept, o).text();
+        scene.objects[o].why.sentence = Sentence{scene, parts, objects, swept, o}.text();
     }
 }
 

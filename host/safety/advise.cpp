@@ -23,29 +23,22 @@ struct Place {
     safety::RiskObject there;
 };
 
-class Mover {
-  public:
-    Mover(const SolidScene& solids, std::span<const Body> objects,
-          std::span<const safety::RiskObject> at_risk,
-          std::span<const safety::Disturbance> disturbances, double friction, double tolerable_J,
-          const Unseen& unseen)
-        : cells_(solids.cells()),
-          objects_(objects),
-          at_risk_(at_risk),
-          disturbances_(disturbances),
-          friction_(friction),
-          tolerable_J_(tolerable_J),
-          columns_(solids.columns()),
-          unseen_(unseen) {}
+struct Mover {
+    const SolidScene& solids;
+    std::span<const Body> objects;
+    std::span<const safety::RiskObject> at_risk;
+    std::span<const safety::Disturbance> disturbances;
+    double friction, tolerable_J;
+    const Unseen& unseen;
 
     // The nearest places of the object that are tolerable to those: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
     std::vector<Place> places(std::size_t o, const Landscape::Places& around) const {
-        const Elsewhere elsewhere{toppling_of(objects_[o], objects_[o].open_tipping, friction_),
-                                  toppling_of(objects_[o], objects_[o].level_tipping, friction_)};
+        const Elsewhere elsewhere{toppling_of(objects[o], objects[o].open_tipping, friction),
+                                  toppling_of(objects[o], objects[o].level_tipping, friction)};
         std::map<std::pair<int, int>, Place> nearest;
         const std::int32_t half = around.side / 2;
-        const double voxel_m = cells_.voxel_m;
+        const double voxel_m = solids.voxel_m();
         const auto stride = static_cast<std::int32_t>(std::lround(around.step_m / voxel_m));
         for (std::int32_t b = 0; b < around.side; ++b) {
             for (std::int32_t a = 0; a < around.side; ++a) {
@@ -59,8 +52,8 @@ class Mover {
                     static_cast<int>(safety::nearest_direction(place.di, place.dj))};
                 const auto known = nearest.find(key);
                 if (known != nearest.end() && known->second.way_m <= place.way_m) continue;
-                const auto slide = physics::slide_elsewhere(around, a, b, at_risk_[o].mass_kg,
-                                                            friction_, safety::directions());
+                const auto slide = physics::slide_elsewhere(around, a, b, at_risk[o].mass_kg,
+                                                            friction, safety::directions());
                 if (!slide.reachable || !weigh(o, slide.slide, elsewhere, place)) continue;
                 nearest.insert_or_assign(key, std::move(place));
             }
@@ -72,7 +65,6 @@ class Mover {
         return out;
     }
 
-  private:
     // How it topples where no wall is beside it: near an edge of its support, and far from any.
     struct Elsewhere {
         physics::Toppling open, level;
@@ -80,40 +72,33 @@ class Mover {
     // Its curve and risk there; false where that is more than is tolerated.
     bool weigh(std::size_t o, const physics::SlideResult& slide, const Elsewhere& elsewhere,
                Place& place) const {
-        const Body& object = objects_[o];
+        const Body& object = objects[o];
         physics::Candidate there = object.candidate;
-        const double dx = place.di * cells_.voxel_m, dy = place.dj * cells_.voxel_m;
+        const double dx = place.di * solids.voxel_m(), dy = place.dj * solids.voxel_m();
         there.body.center[0] += dx;
         there.body.center[1] += dy;
         for (auto& corner : there.support_polygon) corner = {corner[0] + dx, corner[1] + dy};
-        const auto drops = physics::drops_when_tipped_m(cells_, columns_, there, unseen_);
+        const auto drops =
+            physics::drops_when_tipped_m(solids.cells(), solids.columns(), there, unseen);
         const bool falls = std::any_of(drops.begin(), drops.end(), [](double d) { return d > 0; });
         // Near an edge the drops are others than here; all that is known is that there are some. So
         // are walls: none is counted on.
         const physics::Instability how =
             physics::combine_curves(falls ? object.open_tipping : object.level_tipping, slide);
-        safety::RiskObject changed = at_risk_[o];
+        safety::RiskObject changed = at_risk[o];
         changed.barrier_J = how.barrier_J;
         changed.curve = how.curve;
         changed.slide_distance_m = slide.found ? slide.distance_m : -1;
         changed.toppling = std::make_shared<physics::Toppling>(
             (falls ? elsewhere.open : elsewhere.level).elsewhere(slide));
-        for (const safety::Disturbance& d : disturbances_) {
+        for (const safety::Disturbance& d : disturbances) {
             if (d.response.empty() || !d.response[o]) continue;
             place.risk_J =
                 std::max(place.risk_J, safety::risk_of(d.response[o](changed), changed, 1).mean_J);
         }
         place.there = std::move(changed);
-        return place.risk_J <= tolerable_J_;
+        return place.risk_J <= tolerable_J;
     }
-
-    const SolidCells& cells_;
-    std::span<const Body> objects_;
-    std::span<const safety::RiskObject> at_risk_;
-    std::span<const safety::Disturbance> disturbances_;
-    double friction_, tolerable_J_;
-    const CellColumns& columns_;
-    const Unseen& unseen_;
 };
 
 // Such a share of the events of a kind that has happened before would have upset it, and yet it
@@ -195,7 +180,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
 
     const auto around = physics::places_of(cells, object_of_primitive, bodies, chosen, friction,
                                            look_around_m + see_edges_m, unseen);
-    const Mover mover(solids, objects, at_risk, disturbances, friction, tolerable_J, unseen);
+    const Mover mover{solids, objects, at_risk, disturbances, friction, tolerable_J, unseen};
     std::vector<safety::Placement> placements;
     std::vector<double> all_J;  // the largest risk there
     for (std::size_t n = 0; n < chosen.size(); ++n) {
