@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "parses/invariants.h"
 
+#include "core/vectors.h"
+#include "physics/landscape.h"
 #include "result/landscapes_json.h"
 #include "result/scene_json.h"
 
@@ -24,23 +26,65 @@ void expect_share(double value, const std::string& what) {
     expect(value >= 0 && value <= 1 + 1e-9, what + " is " + std::to_string(value));
 }
 
-void check_labels(const std::vector<std::int32_t>& primitive,
-                  const std::vector<std::int32_t>& object, const Scene& scene,
-                  const std::string& of) {
+void expect_unit(const Vec3& v, const std::string& what) {
+    expect(std::abs(length(v) - 1) < 1e-6, what + " is no unit vector");
+}
+
+void expect_one_of(const std::string& value, const std::set<std::string>& all) {
+    expect(all.contains(value), "\"" + value + "\" is no word for that");
+}
+
+void check_head(const Scene& scene) {
+    for (const std::string* text :
+         {&scene.source, &scene.topple_version, &scene.backend, &scene.device})
+        expect(!text->empty(), "a name of what was parsed with what is missing");
+    for (const double v : {scene.voxel_size_m, scene.density_kg_m3, scene.friction})
+        expect(std::isfinite(v) && v > 0, "what was reckoned with is not above 0");
+    expect_unit(scene.up, "up");
+    const Mat4& m = scene.manhattan_from_input;
+    for (std::size_t row = 0; row < 3; ++row)
+        expect_unit({m[4 * row], m[4 * row + 1], m[4 * row + 2]}, "a row of the frame");
+    expect(std::equal(m.begin() + 12, m.end(), std::begin({0.0, 0.0, 0.0, 1.0})),
+           "the frame's last row is another");
+    expect(!scene.timings_s.empty(), "no stage took any time");
+    for (const auto& [stage, seconds] : scene.timings_s) expect_amount(seconds, stage);
+}
+
+// A label is a primitive's number, or -1, and its object; how many there are of each.
+std::vector<std::uint64_t> check_labels(const std::vector<std::int32_t>& primitive,
+                                        const std::vector<std::int32_t>& object, const Scene& scene,
+                                        const std::string& of) {
     const auto primitives = static_cast<std::int32_t>(scene.primitives.size());
     expect(primitive.size() == object.size(), of + ": labels are not one each");
+    std::vector<std::uint64_t> count(scene.primitives.size());
     for (std::size_t n = 0; n < primitive.size(); ++n) {
         expect(primitive[n] >= -1 && primitive[n] < primitives, of + ": no such primitive");
         const std::int32_t its = primitive[n] < 0 ? -1 : scene.primitives[primitive[n]].object;
         expect(object[n] == its, of + ": its object is not its primitive's");
+        if (primitive[n] >= 0) ++count[primitive[n]];
     }
+    return count;
+}
+
+// Closed furniture is boards around contents, of which errors say how much may be in between.
+void check_mass(const Primitive& p, const Object& o, const Scene& scene) {
+    const double voxel = scene.voxel_size_m, mass = p.volume_m3 * scene.density_kg_m3;
+    // Its surface passes through some of its voxels, and through some beside them.
+    expect(p.volume_m3 <= 3 * (static_cast<double>(p.solid_voxels) + 1) * voxel * voxel * voxel,
+           "a primitive is larger than its voxels");
+    expect(o.mass_model == "solid" ? std::abs(p.mass_kg - mass) <= 1e-6 * mass + o.mass_error_kg
+                                   : p.mass_kg <= mass,
+           "a primitive's mass is not its volume's");
 }
 
 void check_parts(const Scene& scene) {
+    const auto points = check_labels(scene.points.primitive, scene.points.object, scene, "points");
+    const auto voxels = check_labels(scene.solid.primitive, scene.solid.object, scene, "voxels");
     std::vector<int> owners(scene.primitives.size());
     for (std::size_t n = 0; n < scene.objects.size(); ++n) {
         const Object& o = scene.objects[n];
         expect(o.id == static_cast<std::int32_t>(n), "an object's id is not its place");
+        expect(!o.primitives.empty(), "an object has no primitives");
         double mass = 0;
         for (const std::int32_t p : o.primitives) {
             expect(p >= 0 && static_cast<std::size_t>(p) < owners.size(), "no such primitive");
@@ -52,14 +96,14 @@ void check_parts(const Scene& scene) {
         expect(std::abs(mass - o.mass_kg) <= 1e-9 * (mass + o.mass_kg),
                "an object's mass is not its primitives'");
     }
-    std::vector<std::uint64_t> voxels(scene.primitives.size());
-    for (const std::int32_t p : scene.solid.primitive)
-        if (p >= 0) ++voxels.at(static_cast<std::size_t>(p));
     for (std::size_t n = 0; n < owners.size(); ++n) {
         const Primitive& p = scene.primitives[n];
         expect(p.id == static_cast<std::int32_t>(n), "a primitive's id is not its place");
         expect(owners[n] == 1, "a primitive is not of one object");
+        expect(p.points == points[n], "a primitive has other points than are labelled");
         expect(p.solid_voxels <= voxels[n], "a primitive has more voxels than the grid");
+        expect_one_of(p.model, {"plane", "quadric", "merged"});
+        check_mass(p, scene.objects[p.object], scene);
         expect_amount(p.volume_m3, "a volume");
         expect_amount(p.mass_kg, "a mass");
         for (const double v : p.center_of_mass_m)
@@ -67,7 +111,7 @@ void check_parts(const Scene& scene) {
     }
 }
 
-void check_object(const Object& o, std::size_t objects) {
+void check_object(const Object& o, std::size_t objects, double voxel_m) {
     for (const double v : {o.mass_kg, o.barrier_J, o.release_J, o.mass_error_kg,
                            o.footprint_error_m, o.barrier_error_J})
         expect_amount(v, "an object's mass, energy or error");
@@ -116,9 +160,14 @@ void check_object(const Object& o, std::size_t objects) {
         expect(directed.push_N[n] >= 0 && directed.push_error_N[n] >= 0,
                "a push or its error is negative");
         const Vec3& way = directed.direction[n];
-        expect(std::abs(std::hypot(way[0], way[1], way[2]) - 1) < 1e-9,
-               "a push has no unit direction");
+        expect_unit(way, "the way of a push");
     }
+    // At most that of a body which rolls, its support known to two voxels: what a sparse scan
+    // leaves open.
+    expect((o.barrier_error_J > 0) != o.grounded, "a barrier without an error, or no barrier");
+    expect(o.barrier_error_J <= (o.mass_kg + 1e-3) * physics::gravity * 2 * voxel_m +
+                                    o.barrier_J * o.mass_error_kg / o.mass_kg,
+           "a barrier's error is " + std::to_string(o.barrier_error_J));
     expect_share(o.agreement, "an agreement");
     expect_share(o.rest_probability, "the probability of a rest");
     expect(std::isnan(o.unsafety) || (o.unsafety >= 1 && o.unsafety <= 10),
@@ -137,7 +186,6 @@ void check_object(const Object& o, std::size_t objects) {
     // Without any disturbance nothing is ranked.
     const bool ranked = o.grounded || (o.seen_enough && !o.risk_J.empty());
     expect(o.unsafety_category.empty() != ranked, "a category of what was not seen");
-    for (const auto& [name, share] : o.fall_chance) expect_share(share, "the chance by " + name);
     const auto count = static_cast<std::int32_t>(objects);
     for (const std::int32_t id : {o.why.lands_on, o.fall.lands_on})
         expect(id >= -1 && id < count, "it lands on no object");
@@ -145,7 +193,66 @@ void check_object(const Object& o, std::size_t objects) {
         for (const std::int32_t id : *ids)
             expect(id >= 0 && id < count && id != o.id,
                    "it stands on, or takes along, no other object");
-    expect(!o.why.sentence.empty() || o.grounded, "nothing says why");
+}
+
+// Of what its numbers say in words.
+void check_why(const Object& o, const Scene& scene) {
+    const Why& why = o.why;
+    expect(why.W_J == o.barrier_J && why.S_J == o.release_J, "why tells of another barrier");
+    std::vector<std::int32_t> carriers;
+    for (const Support& s : scene.supports)
+        if (s.supported == o.id) carriers.push_back(s.supporter);
+    expect(why.stands_on == carriers, "it stands on what does not support it");
+    expect(why.edge_m.empty() || why.edge_m.size() == 2, "an edge has no two ends");
+    expect_amount(why.drop_m, "a drop");
+    expect(why.drop_m == 0 ? why.lands_on == -1
+                           : why.S_J >= o.mass_kg * physics::gravity * why.drop_m * (1 - 1e-9),
+           "a drop sets free less than it must");
+    expect((why.way_m > 0) == (o.mode == "slide" && why.W_J > 0), "a way without a slide");
+    expect(why.sentence.ends_with("."), "nothing says why");
+    expect_one_of(o.mode, {"tip", "slide", "none"});
+    expect(std::abs(length(o.direction) - (o.mode == "none" ? 0 : 1)) < 1e-6,
+           "a way out has no direction");
+    if (o.mode == "none") return;
+    // Clockwise from the second axis of the scene's frame.
+    const Mat4& m = scene.manhattan_from_input;
+    const double azimuth = why.azimuth_deg * std::numbers::pi / 180;
+    expect(std::abs(std::sin(azimuth) - dot({m[0], m[1], m[2]}, o.direction)) < 1e-6 &&
+               std::abs(std::cos(azimuth) - dot({m[4], m[5], m[6]}, o.direction)) < 1e-6,
+           "an azimuth is not that of its direction");
+}
+
+// How sure its risks are, where it would fall, and what to do about it.
+void check_prospects(const Object& o, const Scene& scene) {
+    double worst = 0;
+    bool falls = false;
+    for (const auto& [name, risk] : o.risk_J) {
+        const double chance = o.fall_chance.at(name);
+        expect_share(chance, "the chance by " + name);
+        expect((chance > 0) == (risk > 0), "a risk without a chance by " + name);
+        expect(o.risk_error_J.at(name) >= o.risk_spread_J.at(name), "an error below its part");
+        expect(scene.fields.contains(name), "a risk by what was not asked for");
+        falls = falls || chance > 0;
+        worst = std::max(worst, risk);
+    }
+    expect(o.risk_J.size() == scene.fields.size(), "a risk by what was asked for is missing");
+    expect(o.fall.falls == falls, "whether it falls is another thing");
+    expect(std::isfinite(length(o.fall.lands_m)), "it lands nowhere");
+    if (o.unsafety_category.empty())
+        expect(!o.unsafety_certain, "what is not known is certain");
+    else
+        expect_one_of(o.unsafety_category, {"none", "low", "medium", "high"});
+    expect(std::isnan(o.unsafety) == o.unsafety_category.empty(), "a rank without a category");
+    const Advice& advice = o.advice;
+    expect_one_of(advice.kind, {"", "see", "check", "move", "fix"});
+    expect(advice.sentence.empty() == advice.kind.empty(), "advice without words");
+    const double tolerable_J = scene.events.at("tolerable_J");
+    const bool to_act = advice.kind == "check" || advice.kind == "move" || advice.kind == "fix";
+    expect(to_act == (worst > tolerable_J), "advice that is not as the risk");
+    if (advice.kind == "move")
+        expect(length(advice.move_m) > 0 && advice.risk_J <= tolerable_J, "moved to no avail");
+    else
+        expect(length(advice.move_m) == 0, "what is not to be moved is moved");
 }
 
 // But for pairs that carry one another. What nothing carries any more goes, until nothing is left
@@ -177,8 +284,11 @@ void check_relations(const Scene& scene) {
                "a contact joins no two primitives");
         expect_amount(c.area_m2, "a contact's area");
         expect_share(c.probability, "a contact's probability");
-        expect(std::abs(std::hypot(c.normal[0], c.normal[1], c.normal[2]) - 1) < 1e-6,
-               "a contact's normal is not unit");
+        expect_unit(c.normal, "a contact's normal");
+        expect_one_of(c.relation, {"fixed", "support", "adjacent"});
+        expect((c.relation == "fixed") ==
+                   (scene.primitives[c.a].object == scene.primitives[c.b].object),
+               "what is fixed is not what is one object");
     }
     std::set<std::pair<std::int32_t, std::int32_t>> stated;
     for (const Support& s : scene.supports) {
@@ -212,12 +322,13 @@ void check_landscape(const Object& o, const Vec3& up) {
 }
 
 void check(const Scene& scene) {
-    check_labels(scene.points.primitive, scene.points.object, scene, "points");
-    check_labels(scene.solid.primitive, scene.solid.object, scene, "voxels");
+    check_head(scene);
     for (const std::uint8_t state : scene.solid.state) expect(state <= 1, "no state of a voxel");
     check_parts(scene);
     for (const Object& o : scene.objects) {
-        check_object(o, scene.objects.size());
+        check_object(o, scene.objects.size(), scene.voxel_size_m);
+        check_why(o, scene);
+        check_prospects(o, scene);
         if (!o.grounded) check_landscape(o, scene.up);
     }
     check_relations(scene);
@@ -282,14 +393,7 @@ std::string what_is_wrong(const Scene& scene, const std::filesystem::path& folde
     return words_of([&] {
         Scene back = io::read_scene_json(folder / "scene.json");
         io::read_landscapes_json(folder / "landscapes.json", back);
-        expect(back.primitives.size() == scene.primitives.size() &&
-                   back.objects.size() == scene.objects.size() &&
-                   back.contacts.size() == scene.contacts.size() &&
-                   back.supports.size() == scene.supports.size(),
-               "scene.json has other counts");
-        for (std::size_t n = 0; n < scene.primitives.size(); ++n)
-            expect(back.primitives[n].object == scene.primitives[n].object,
-                   "scene.json has a primitive in another object");
+        expect(io::scene_json(back) == io::scene_json(scene), "scene.json tells of another");
         check_ply(folder / "points.ply", scene.points.primitive, scene.points.object);
         check_ply(folder / "solid.ply", scene.solid.primitive, scene.solid.object);
     });
