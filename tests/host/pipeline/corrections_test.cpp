@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "topple/corrections.h"
 
-#include "device/devices.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
+#include "lab/temporary_folder.h"
 #include "pipeline/stages.h"
 #include "result/scene_json.h"
 #include "scale/parts_cache.h"
-#include "small_room.h"
-#include "vdb/voxel_scene.h"
 
 // Corrections by hand through a whole parse.
 namespace topple::test {
@@ -24,10 +22,30 @@ Correction correction(Kind kind, std::vector<Vec3> at) {
     c.at_m = std::move(at);
     return c;
 }
-Correction apart(const Vec3& at, const Vec3& from) {
-    Correction c = correction(Kind::apart, {at});
-    c.from_m = {from};
+template <class Value>
+Correction correction(Kind kind, std::vector<Vec3> at, Value Correction::*member,
+                      const Value& value) {
+    Correction c = correction(kind, std::move(at));
+    c.*member = value;
     return c;
+}
+Correction apart(const Vec3& at, const Vec3& from) {
+    return correction(Kind::apart, {at}, &Correction::from_m, {from});
+}
+Correction fixed(std::vector<Vec3> at) {
+    return correction(Kind::fixed, std::move(at));
+}
+Correction one_thing(std::vector<Vec3> at) {
+    return correction(Kind::one_thing, std::move(at));
+}
+Correction mass(std::vector<Vec3> at, double kg) {
+    return correction(Kind::mass, std::move(at), &Correction::mass_kg, kg);
+}
+Correction hollow(const Vec3& at) {
+    return correction(Kind::hollow, {at}, &Correction::wall_m, 0.02);
+}
+Correction name(const Vec3& at, const char* called) {
+    return correction(Kind::name, {at}, &Correction::name, std::string(called));
 }
 
 // On sides of the small room's things.
@@ -44,20 +62,26 @@ std::size_t nearest_point(const Scene& scene, const PointCloud& cloud, const Vec
     return best;
 }
 
+// All go on from the parts that the first parse of the room found, which the cache keeps.
 class CorrectedRoom : public testing::Test {
   protected:
+    static void SetUpTestSuite() { folder_ = new scenes::TemporaryFolder("topple_corrected"); }
+    static void TearDownTestSuite() { delete folder_; }
     static const PointCloud& cloud() {
         static const SmallRoom room = SmallRoom::scattered();
         return room.cloud;
     }
     static ParseResult parsed(std::vector<Correction> corrections, std::uint64_t seed = 1,
                               double voxel_m = 0) {
+        const auto file = folder_->path() / "room.ply";
+        if (!std::filesystem::exists(file)) scenes::write_cloud(file, cloud());
         ParseOptions options = on(device::open_device("native"));
         options.disturbances = {};
         options.seed = seed;
         options.voxel_m = voxel_m;
         options.corrections = std::move(corrections);
-        return parse(cloud(), options);
+        options.cache_file = folder_->path() / ("cache" + std::to_string(voxel_m));
+        return parse(file, options);
     }
     static std::int32_t id_at(const Scene& scene, const Vec3& at) {
         return scene.points.object[nearest_point(scene, cloud(), at)];
@@ -74,22 +98,14 @@ class CorrectedRoom : public testing::Test {
         for (const std::string& note : scene.notes)
             EXPECT_FALSE(note.starts_with("Correction")) << note;
     }
-};
-
-TEST_F(CorrectedRoom, IsAsSomebodyKnowsItWhateverTheSeedAndTheVoxels) {
-    Correction mass = correction(Kind::mass, {on_crate}), name = correction(Kind::name, {on_crate}),
-               hollow = correction(Kind::hollow, {on_crate});
-    mass.mass_kg = 12.5;
-    name.name = "chest";
-    hollow.wall_m = 0.02;
-    const std::vector<Correction> all{correction(Kind::one_thing, {on_crate, on_box}), mass, name,
-                                      hollow};
-    for (const auto& [seed, voxel_m] : {std::pair{1u, 0.0}, {7u, 0.03}, {8u, 0.016}}) {
-        SCOPED_TRACE(voxel_m);
+    static void expect_known(std::uint64_t seed, double voxel_m) {
         const Scene plain = parsed({}, seed, voxel_m).scene;
         ASSERT_NE(id_at(plain, on_crate), id_at(plain, on_box));
         EXPECT_TRUE(plain.corrections.empty());
-        const Scene scene = parsed(all, seed, voxel_m).scene;
+        const Scene scene = parsed({one_thing({on_crate, on_box}), mass({on_crate}, 12.5),
+                                    name(on_crate, "chest"), hollow(on_crate)},
+                                   seed, voxel_m)
+                                .scene;
         expect_held(scene, 4);
         EXPECT_EQ(id_at(scene, on_crate), id_at(scene, on_box));
         EXPECT_EQ(scene.objects.size() + 1, plain.objects.size());
@@ -106,39 +122,39 @@ TEST_F(CorrectedRoom, IsAsSomebodyKnowsItWhateverTheSeedAndTheVoxels) {
         EXPECT_NEAR(of_parts, 12.5, 1e-9);
         EXPECT_GT(chest.barrier_J, 0);
     }
+    static inline const scenes::TemporaryFolder* folder_ = nullptr;
+};
+
+TEST_F(CorrectedRoom, IsAsSomebodyKnowsIt) {
+    expect_known(1, 0);
 }
 
-// A shell is harder to turn than a block of the same mass.
-TEST_F(CorrectedRoom, HoldsAHeavyShell) {
-    Correction mass = correction(Kind::mass, {on_crate}),
-               hollow = correction(Kind::hollow, {on_crate});
-    mass.mass_kg = 12.5;
-    hollow.wall_m = 0.02;
-    const Scene block = parsed({mass}).scene, shell = parsed({mass, hollow}).scene;
+class SlowCorrectedRoom : public CorrectedRoom {};
+TEST_F(SlowCorrectedRoom, IsSoWhateverTheSeedAndTheVoxels) {
+    expect_known(7, 0.03);
+    expect_known(8, 0.016);
+}
+
+// A shell is harder to turn than a block of the same mass, and weighs what its sides do.
+TEST_F(CorrectedRoom, HoldsShells) {
+    const Scene block = parsed({mass({on_crate}, 12.5)}).scene,
+                shell = parsed({mass({on_crate}, 12.5), hollow(on_crate), hollow(on_box)}).scene;
+    expect_held(shell, 3);
     EXPECT_EQ(object_at(block, on_crate).mass_model, "solid");
     EXPECT_NEAR(object_at(block, on_crate).mass_kg, 12.5, 1e-9);
     for (const std::size_t axis : {0u, 4u, 8u})
         EXPECT_GT(object_at(shell, on_crate).inertia_kg_m2[axis],
                   1.1 * object_at(block, on_crate).inertia_kg_m2[axis]);
-}
-
-// Shells of 2 cm weigh what their sides do.
-TEST_F(CorrectedRoom, HoldsAHollowBox) {
-    Correction hollow = correction(Kind::hollow, {on_box});
-    hollow.wall_m = 0.02;
-    const Scene scene = parsed({hollow}).scene;
-    expect_held(scene, 1);
     const double outer = 0.25 * 0.2 * 0.35, inner = 0.21 * 0.16 * 0.31;
-    EXPECT_NEAR(object_at(scene, on_box).mass_kg, 700 * (outer - inner),
+    EXPECT_NEAR(object_at(shell, on_box).mass_kg, 700 * (outer - inner),
                 0.2 * 700 * (outer - inner));
-    EXPECT_NEAR(object_at(scene, on_crate).mass_kg, 700 * 0.7 * 0.6 * 0.5, 12);
+    EXPECT_NEAR(object_at(block, on_box).mass_kg, 700 * outer, 0.2 * 700 * outer);
 }
 
 TEST_F(CorrectedRoom, HasNoRiskOfWhatIsFixed) {
     const Scene plain = parsed({}).scene;
     ASSERT_FALSE(object_at(plain, on_crate).grounded);
-    const Scene scene =
-        parsed({correction(Kind::fixed, {on_crate}), correction(Kind::fixed, {on_floor})}).scene;
+    const Scene scene = parsed({fixed({on_crate}), fixed({on_floor})}).scene;
     expect_held(scene, 2);
     EXPECT_TRUE(object_at(scene, on_crate).grounded);
     EXPECT_EQ(id_at(scene, on_crate), id_at(scene, on_floor));
@@ -146,10 +162,8 @@ TEST_F(CorrectedRoom, HasNoRiskOfWhatIsFixed) {
     EXPECT_THAT(object_at(scene, on_box).why.stands_on, ElementsAre(0));
     EXPECT_EQ(scene.objects.size() + 1, plain.objects.size());
     // Only parts of the room have names there, and it weighs nothing.
-    Correction name = correction(Kind::name, {on_crate}), mass = correction(Kind::mass, {on_crate});
-    name.name = "shelf";
-    mass.mass_kg = 3;
-    const Scene named = parsed({correction(Kind::fixed, {on_crate}), name, mass}).scene;
+    const Scene named =
+        parsed({fixed({on_crate}), name(on_crate, "shelf"), mass({on_crate}, 3)}).scene;
     EXPECT_EQ(named.objects[0].name, "");
     const std::int32_t part = named.points.primitive[nearest_point(named, cloud(), on_crate)];
     EXPECT_EQ(named.primitives[part].name, "shelf");
@@ -181,21 +195,13 @@ TEST_F(CorrectedRoom, IsEmptyWhereAThingIsNotThere) {
         EXPECT_EQ(scene.primitives[p].id, static_cast<std::int32_t>(p));
         EXPECT_GE(scene.primitives[p].object, 0);
     }
-    const vdb::VoxelFrame frame = result.voxels->frame();
     const Vec3 middle{1.325, 1.2, 0.7};
-    std::array<std::int32_t, 3> at{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        double along = 0;
-        for (std::size_t d = 0; d < 3; ++d) along += frame.grid_from_input[a][d] * middle[d];
-        at[a] = static_cast<std::int32_t>(std::floor(along / frame.voxel_m));
-    }
-    EXPECT_EQ(result.voxels->state_at(at[0], at[1], at[2]), vdb::State::empty);
-    EXPECT_EQ(plain.voxels->state_at(at[0], at[1], at[2]), vdb::State::completed);
+    EXPECT_EQ(state_at(result, middle), vdb::State::empty);
+    EXPECT_EQ(state_at(plain, middle), vdb::State::completed);
     // What was on it is taken away with it where both are one.
-    const Scene none =
-        parsed({correction(Kind::one_thing, {on_box, on_crate}),
-                correction(Kind::not_there, {on_box}), correction(Kind::fixed, {on_crate})})
-            .scene;
+    const Scene none = parsed({one_thing({on_box, on_crate}), correction(Kind::not_there, {on_box}),
+                               fixed({on_crate})})
+                           .scene;
     EXPECT_EQ(id_at(none, on_crate), -1);
     EXPECT_FALSE(none.corrections[2].held);
     EXPECT_THAT(none.corrections[2].outcome, HasSubstr("correction 2"));
@@ -203,8 +209,7 @@ TEST_F(CorrectedRoom, IsEmptyWhereAThingIsNotThere) {
 
 // A wall that is none: it is a board that stands there.
 TEST_F(CorrectedRoom, MayHaveLessOfABuilding) {
-    const Scene plain = parsed({}).scene;
-    ASSERT_TRUE(object_at(plain, on_east).grounded);
+    ASSERT_TRUE(object_at(parsed({}).scene, on_east).grounded);
     const Scene scene = parsed({apart(on_east, on_floor)}).scene;
     expect_held(scene, 1);
     EXPECT_NE(id_at(scene, on_east), id_at(scene, on_floor));
@@ -213,29 +218,22 @@ TEST_F(CorrectedRoom, MayHaveLessOfABuilding) {
     EXPECT_THAT(object_at(scene, on_east).corrected, ElementsAre(1));
     // Nor can it be fixed to what it is apart of: a reason that holds for both parts is told once.
     const Scene both = parsed({apart(on_east, on_floor), apart(on_crate, on_floor),
-                               correction(Kind::one_thing, {on_east, on_crate}),
-                               correction(Kind::fixed, {on_east, on_crate})})
+                               one_thing({on_east, on_crate}), fixed({on_east, on_crate})})
                            .scene;
     EXPECT_FALSE(object_at(both, on_east).grounded);
     EXPECT_EQ(both.corrections[3].outcome,
               "correction 1 keeps a part of its object apart from the building");
-    const Scene things = parsed({apart(on_crate, on_box), correction(Kind::fixed, {on_crate}),
-                                 correction(Kind::fixed, {on_box})})
-                             .scene;
+    const Scene things =
+        parsed({apart(on_crate, on_box), fixed({on_crate}), fixed({on_box})}).scene;
     EXPECT_TRUE(object_at(things, on_box).grounded);
     EXPECT_TRUE(things.corrections[0].held);
     EXPECT_THAT(things.corrections[0].outcome, HasSubstr("both are fixed"));
 }
 
 TEST_F(CorrectedRoom, TellsWhatComesToNothing) {
-    Correction light = correction(Kind::mass, {on_box}), heavy = light,
-               half = correction(Kind::mass, {on_box, in_air});
-    light.mass_kg = 1;
-    heavy.mass_kg = 2;
-    half.mass_kg = 1;
     const Scene scene =
-        parsed({correction(Kind::fixed, {in_air}), correction(Kind::one_thing, {on_crate, in_air}),
-                apart(on_crate, {1.7, 1.2, 0.25}), light, heavy, half})
+        parsed({fixed({in_air}), one_thing({on_crate, in_air}), apart(on_crate, {1.7, 1.2, 0.25}),
+                mass({on_box}, 1), mass({on_box}, 2), mass({on_box, in_air}, 1)})
             .scene;
     std::vector<std::string> notes;
     for (const std::string& note : scene.notes)
@@ -250,51 +248,42 @@ TEST_F(CorrectedRoom, TellsWhatComesToNothing) {
     EXPECT_FALSE(object_at(scene, on_crate).grounded);
 }
 
-TEST_F(CorrectedRoom, TellsOfAMassOfSeveralObjects) {
-    Correction mass = correction(Kind::mass, {on_box, on_crate});
-    mass.mass_kg = 9;
-    const Scene scene = parsed({mass}).scene;
-    EXPECT_TRUE(scene.corrections[0].held);
-    EXPECT_THAT(scene.corrections[0].outcome, testing::StartsWith("held, but its spots lie in 2"));
-    EXPECT_NEAR(object_at(scene, on_box).mass_kg, 9, 1e-9);
-}
-
 TEST_F(CorrectedRoom, IsNotWhatContradictsItself) {
     expect_input_error(
         [] {
-            parsed({correction(Kind::one_thing, {on_crate, on_east}),
-                    correction(Kind::fixed, {on_floor}),
-                    correction(Kind::one_thing, {on_east, on_box}), apart(on_box, on_crate)});
+            parsed({one_thing({on_crate, on_east}), fixed({on_floor}), one_thing({on_east, on_box}),
+                    apart(on_box, on_crate)});
         },
         {"correction 4 (apart)", "correction 1 (one_thing) and correction 3 (one_thing)"});
-    Correction bad = correction(Kind::mass, {on_box});
-    bad.mass_kg = -1;
-    EXPECT_THAT(message_of([&] { parsed({bad}); }, ErrorKind::usage),
+    EXPECT_THAT(message_of([&] { parsed({mass({on_box}, -1)}); }, ErrorKind::usage),
                 HasSubstr("correction 1 (mass)"));
 }
 
-// scene.json says all of it, and is read back.
+// scene.json says all of it, and is read back; a mass of several objects is told of.
 TEST_F(CorrectedRoom, IsWrittenAndReadBack) {
-    Correction name = correction(Kind::name, {on_crate});
-    name.name = "chest";
-    const Scene scene =
-        parsed({name, apart(on_crate, on_box), correction(Kind::fixed, {in_air})}).scene;
+    const Scene scene = parsed({name(on_crate, "chest"), apart(on_crate, on_box), fixed({in_air}),
+                                mass({on_box, on_crate}, 9)})
+                            .scene;
+    EXPECT_TRUE(scene.corrections[3].held);
+    EXPECT_THAT(scene.corrections[3].outcome, testing::StartsWith("held, but its spots lie in 2"));
+    EXPECT_NEAR(object_at(scene, on_box).mass_kg, 9, 1e-9);
     const std::string text = io::scene_json(scene);
     EXPECT_THAT(text, HasSubstr("\"name\": \"chest\""));
     EXPECT_THAT(text, HasSubstr("\"corrected\": ["));
-    const auto file = std::filesystem::temp_directory_path() / "topple-corrected-scene.json";
+    const auto file = folder_->path() / "scene.json";
     io::write_scene_json(file, scene);
-    const Scene back = io::read_scene_json(file);
-    std::filesystem::remove(file);
-    EXPECT_EQ(io::scene_json(back), text);
+    EXPECT_EQ(io::scene_json(io::read_scene_json(file)), text);
 }
 
 // Of a furnished room: an object of several parts is cut in two where somebody says so.
-TEST(CorrectedScan, IsCutWhereTwoThingsWereOne) {
+using CorrectedScan = Files;
+TEST_F(CorrectedScan, IsCutWhereTwoThingsWereOne) {
     const PointCloud cloud = cloud_of_room(3);
+    scenes::write_cloud(path("room.ply"), cloud);
     ParseOptions options = on(device::open_device("native"));
     options.disturbances = {};
-    const Scene plain = parse(cloud, options).scene;
+    options.cache_file = path("cache");
+    const Scene plain = parse(path("room.ply"), options).scene;
     // The two parts with most points of an object that can move.
     std::vector<std::int32_t> parts;
     for (const Object& o : plain.objects) {
@@ -326,7 +315,7 @@ TEST(CorrectedScan, IsCutWhereTwoThingsWereOne) {
     for (const std::uint64_t seed : {1u, 5u}) {
         options.seed = seed;
         options.corrections = {apart(one, other)};
-        const Scene scene = parse(cloud, options).scene;
+        const Scene scene = parse(path("room.ply"), options).scene;
         ASSERT_TRUE(scene.corrections[0].held) << scene.corrections[0].outcome;
         EXPECT_NE(scene.points.object[nearest_point(scene, cloud, one)],
                   scene.points.object[nearest_point(scene, cloud, other)]);

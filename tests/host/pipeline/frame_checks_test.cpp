@@ -38,47 +38,39 @@ TEST(FrameChecks, PosesOfAnotherConvention) {
     camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
     camera.frames = 30;
     const scenes::Sequence walk = scenes::walk(scenes::furnished_room({}), camera);
-    const auto note = [&](bool flipped, ScanOrigin origin, bool backwards = false) {
-        std::vector<Mat4> poses;
-        for (const DepthFrame& frame : walk.frames) {
-            poses.push_back(frame.camera_to_world);
-            for (const std::size_t n : {1U, 5U, 9U, 2U, 6U, 10U})
-                if (flipped) poses.back()[n] *= -1;
-        }
-        if (backwards) std::ranges::reverse(poses);
+    std::vector<Mat4> right;
+    for (const DepthFrame& frame : walk.frames) right.push_back(frame.camera_to_world);
+    const auto note_of = [&](const std::vector<Mat4>& poses,
+                             ScanOrigin origin = ScanOrigin::frames_in_memory) {
         geometry::PoseComparison frames(walk.intrinsics, poses, 2);
         for (std::size_t n = 0; n < poses.size(); ++n) frames.add(walk.frames[n], n);
         return pose_note(frames, poses.size(), origin);
     };
-    const auto note_of = [&](const std::vector<Mat4>& poses) {
-        geometry::PoseComparison frames(walk.intrinsics, poses, 2);
-        for (std::size_t n = 0; n < poses.size(); ++n) frames.add(walk.frames[n], n);
-        return pose_note(frames, poses.size(), ScanOrigin::frames_in_memory);
-    };
-    EXPECT_EQ(note(false, ScanOrigin::frames_folder), "");
-    EXPECT_THAT(note(true, ScanOrigin::frames_folder),
+    EXPECT_EQ(note_of(right, ScanOrigin::frames_folder), "");
+    std::vector<Mat4> poses = right;
+    for (Mat4& pose : poses)
+        for (const std::size_t n : {1U, 5U, 9U, 2U, 6U, 10U}) pose[n] *= -1;
+    EXPECT_THAT(note_of(poses, ScanOrigin::frames_folder),
                 AllOf(HasSubstr("OpenGL"), HasSubstr("write into the file of poses"),
                       HasSubstr("each pose with its second and third columns negated.")));
-    EXPECT_THAT(note(true, ScanOrigin::frames_in_memory), HasSubstr("give as camera_to_world"));
-    EXPECT_THAT(note(false, ScanOrigin::frames_folder, true),
+    EXPECT_THAT(note_of(poses), HasSubstr("give as camera_to_world"));
+    poses.assign(right.rbegin(), right.rend());
+    EXPECT_THAT(note_of(poses, ScanOrigin::frames_folder),
                 AllOf(HasSubstr("The frames contradict each other"), HasSubstr("in their order"),
                       HasSubstr("of intrinsics.json are")));
-    std::vector<Mat4> poses;
-    for (const DepthFrame& frame : walk.frames) {
-        poses.push_back(frame.camera_to_world);
-        std::swap(poses.back()[1], poses.back()[4]);
-        std::swap(poses.back()[2], poses.back()[8]);
-        std::swap(poses.back()[6], poses.back()[9]);
+    poses = right;
+    for (Mat4& pose : poses) {
+        std::swap(pose[1], pose[4]);
+        std::swap(pose[2], pose[8]);
+        std::swap(pose[6], pose[9]);
     }
     EXPECT_THAT(note_of(poses), AllOf(HasSubstr("transposed rotations (column-major, or "
                                                 "quaternions with x, y, z negated)"),
                                       HasSubstr("matrices are row-major")));
-    poses.assign(30, walk.frames[0].camera_to_world);
+    poses.assign(30, right[0]);
     EXPECT_THAT(note_of(poses), testing::EndsWith("were the poses filled in?"));
-    for (std::size_t n = 0; n < 30; ++n) {
-        poses[n] = walk.frames[n].camera_to_world;
-        if (n >= 12 && n < 20) poses[n][3] += 0.3;
-    }
+    poses = right;
+    for (std::size_t n = 12; n < 20; ++n) poses[n][3] += 0.3;
     EXPECT_THAT(note_of(poses),
                 AllOf(testing::StartsWith("Frames contradict the others from frame 1"),
                       HasSubstr("off by about 0."), HasSubstr("doubled, about 0.3"),

@@ -126,8 +126,7 @@ TEST_F(FramesViews, ASingleOneNeedsNoPose) {
     one.camera_to_world.clear();
     const Scene scene = parse(one, quick()).scene;
     EXPECT_FALSE(scene.objects.empty());
-    EXPECT_TRUE(std::ranges::any_of(
-        scene.notes, [](const std::string& note) { return note.starts_with("A single frame"); }));
+    EXPECT_TRUE(noted(scene, "A single frame"));
 }
 
 TEST_F(FramesViews, EndWhereTheyAreCancelledOrWouldTakeTooMuch) {

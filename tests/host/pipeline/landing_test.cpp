@@ -228,22 +228,14 @@ PointCloud scanned(const std::vector<scenes::Part>& parts) {
     return out;
 }
 
-const Object* object_at(const Scene& scene, double x, double y, double z) {
-    for (const Object& o : scene.objects) {
-        const Vec3& c = o.center_of_mass_m;
-        if (!o.grounded && std::hypot(c[0] - x, c[1] - y, c[2] - z) < 0.15) return &o;
-    }
-    return nullptr;
-}
-
 double tipping_J(double mass_kg, double height_m, double margin_m) {
     return mass_kg * 9.80665 * (std::hypot(height_m, margin_m) - height_m);
 }
 
 TEST(UnseenLeg, WhatNoStationSawMayCarry) {
     const Scene scene = parse(scanned(room()), on(device::open_device("native"))).scene;
-    const Object* table = object_at(scene, 1.6, 0.85, 0.4);
-    const Object* carton = object_at(scene, 1.6, 0.82, 0.62);
+    const Object* table = movable_at(scene, {1.6, 0.85, 0.4}, 0.15);
+    const Object* carton = movable_at(scene, {1.6, 0.82, 0.62}, 0.15);
     ASSERT_NE(table, nullptr);
     ASSERT_NE(carton, nullptr);
     const double of_top = 0.84 * 0.5 * thick_m, of_legs = 4 * thick_m * thick_m * under_m;

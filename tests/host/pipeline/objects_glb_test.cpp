@@ -34,7 +34,21 @@ void expect_closed(const aiMesh& mesh) {
     for (const auto& [edge, count] : balance) ASSERT_EQ(count, 0);
 }
 
-class ObjectsGlb : public test::Files {};
+class ObjectsGlb : public test::Files {
+  protected:
+    // What another program finds in the scene's objects.glb.
+    const aiScene* written(const Scene& scene, const vdb::VoxelScene& voxels) {
+        const vdb::VoxelFrame frame = voxels.frame();
+        const auto surfaces = object_surfaces(scene, voxels.solid_cells(), {}, frame, 1);
+        write_objects_glb(path("objects.glb"), scene, surfaces, frame);
+        const aiScene* read = importer_.ReadFile(path("objects.glb").string(), 0);
+        if (!read) throw std::runtime_error(importer_.GetErrorString());
+        return read;
+    }
+
+  private:
+    Assimp::Importer importer_;
+};
 
 // Two blocks of voxels and a fragment, on a grid that is turned and whose up is the input's -y.
 TEST_F(ObjectsGlb, each_object_is_a_closed_mesh_around_its_voxels) {
@@ -69,12 +83,7 @@ TEST_F(ObjectsGlb, each_object_is_a_closed_mesh_around_its_voxels) {
     scene.primitives[1].object = scene.primitives[2].object = 1;
     scene.objects[0].grounded = true;
     scene.objects[1].unsafety = 10;
-    const auto surfaces = object_surfaces(scene, voxels.solid_cells(), {}, frame, 1);
-    write_objects_glb(path("objects.glb"), scene, surfaces, frame);
-
-    Assimp::Importer importer;
-    const aiScene* read = importer.ReadFile(path("objects.glb").string(), 0);
-    ASSERT_TRUE(read) << importer.GetErrorString();
+    const aiScene* read = written(scene, voxels);
     const struct {
         const char* name;
         double voxels, least, red, green;
@@ -134,12 +143,7 @@ TEST_F(ObjectsGlb, colours_are_the_scans_where_it_has_any) {
     scene.primitives[0].object = 0;
     scene.primitives[1].object = 1;
     scene.objects[1].unsafety = 10;
-    const auto surfaces = object_surfaces(scene, voxels.solid_cells(), {}, frame, 1);
-    write_objects_glb(path("objects.glb"), scene, surfaces, frame);
-
-    Assimp::Importer importer;
-    const aiScene* read = importer.ReadFile(path("objects.glb").string(), 0);
-    ASSERT_TRUE(read) << importer.GetErrorString();
+    const aiScene* read = written(scene, voxels);
     ASSERT_EQ(read->mRootNode->mNumChildren, 2u);
     const aiMesh& row = *read->mMeshes[read->mRootNode->mChildren[0]->mMeshes[0]];
     ASSERT_TRUE(row.HasVertexColors(0));
@@ -203,21 +207,15 @@ TEST(ObjectAt, RefusesWhatMakesNoSense) {
     EXPECT_THAT(refusal_at(result, {0, 0, 0}, 1), testing::HasSubstr("add_coordinates()"));
 }
 
-TEST(ObjectAt, OfAParsedRoom) {
-    const SmallRoom room = SmallRoom::scattered();
-    ParseOptions options = on(device::open_device("native"));
-    options.disturbances = {};
-    const ParseResult result = parse(room.cloud, options);
-    const std::int32_t floor = object_at(result, {0.4, 0.4, 0}, 0.05),
-                       crate = object_at(result, {1.05, 0.95, 0.5}, 0.05),
-                       box = object_at(result, {1.3, 1.2, 0.85}, 0.05);
-    ASSERT_GE(floor, 0);
-    ASSERT_GE(crate, 0);
-    ASSERT_GE(box, 0);
-    EXPECT_TRUE(result.scene.objects[floor].grounded);
+TEST_F(ParsedRoom, HasItsObjectsInTheirPlaces) {
+    const auto at = [](const Vec3& place) { return object_at(result(), place, 0.05); };
+    const std::int32_t floor = at({0.4, 0.4, 0}), crate = at({1.05, 0.95, 0.5}),
+                       box = at({1.3, 1.2, 0.85});
+    ASSERT_GE(std::min({floor, crate, box}), 0);
+    EXPECT_TRUE(result().scene.objects[floor].grounded);
     EXPECT_NE(crate, floor);
     EXPECT_NE(box, crate);
-    EXPECT_EQ(object_at(result, {1.3, 1.2, 1.2}, 0.05), -1) << "in the air";
+    EXPECT_EQ(at({1.3, 1.2, 1.2}), -1) << "in the air";
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include "host/io/octomap_files.h"
 #include "host/pipeline/scan.h"
 #include "scale/estimate.h"
-#include "vdb/voxel_scene.h"
 
 // A map goes through a parse, and what was seen to be free and occupied comes out as it went in.
 namespace topple::test {
@@ -12,8 +11,8 @@ namespace {
 
 class OctomapRoundTrip : public Files {
   protected:
-    void expect_unchanged(const std::filesystem::path& map) {
-        const ParseResult result = parse(map, on(device::open_device("native")));
+    ParseResult expect_unchanged(const std::filesystem::path& map) {
+        ParseResult result = parse(map, on(device::open_device("native")));
         EXPECT_EQ(result.scene.up_method, "map");
         EXPECT_GT(result.scene.objects.size(), 0u);
         OutputOptions options;
@@ -24,12 +23,9 @@ class OctomapRoundTrip : public Files {
                     before.free.size());
         EXPECT_TRUE(before.occupied == after.occupied) << after.occupied.size();
         EXPECT_TRUE(before.free == after.free) << after.free.size();
+        return result;
     }
 };
-
-TEST_F(OctomapRoundTrip, of_a_generated_room) {
-    expect_unchanged(write("room.bt", binary_map(room_map())));
-}
 
 TEST_F(OctomapRoundTrip, is_estimated) {
     const Estimate e = estimate(write("room.bt", binary_map(room_map())), {});
@@ -42,9 +38,7 @@ TEST_F(OctomapRoundTrip, is_estimated) {
 TEST_F(OctomapRoundTrip, of_a_room_with_a_solid_pillar) {
     octomap::OcTree tree = room_map();
     add_solid_cube(tree, {32768, 32768 + 40, 32768}, 10);
-    const auto map = write("room.bt", binary_map(tree));
-    expect_unchanged(map);
-    const ParseResult result = parse(map, on(device::open_device("native")));
+    const ParseResult result = expect_unchanged(write("room.bt", binary_map(tree)));
     const SolidCells cells = result.voxels->solid_cells();
     std::size_t within = 0;
     for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -74,24 +68,15 @@ TEST_F(OctomapRoundTrip, other_voxels_and_axes) {
     options.disturbances = {"wind"};
     const ParseResult finer = parse(map, options);
     EXPECT_EQ(finer.scene.voxel_size_m, 0.04);
-    // Middle of the room, and of the unknown inside of the table.
-    const auto state = [](const ParseResult& r, double x, double y, double z) {
-        const auto& f = r.voxels->frame();
-        std::array<std::int32_t, 3> v{};
-        for (std::size_t a = 0; a < 3; ++a) {
-            const Vec3& row = f.grid_from_input[a];
-            v[a] = static_cast<std::int32_t>(
-                std::floor((row[0] * x + row[1] * y + row[2] * z) / f.voxel_m));
-        }
-        return r.voxels->state_at(v[0], v[1], v[2]);
-    };
-    EXPECT_EQ(state(finer, 0.5, 0.9, 1.2), vdb::State::empty);
-    EXPECT_NE(state(finer, 1.15, 1.45, 0.71), vdb::State::empty);
+    const Vec3 middle{0.5, 0.9, 1.2};
+    EXPECT_EQ(state_at(finer, middle), vdb::State::empty);
+    EXPECT_NE(state_at(finer, {1.15, 1.45, 0.71}), vdb::State::empty)
+        << "the unknown inside of the table";
     options.voxel_m = 0;
     options.up = Vec3{0, 0.6, 0.8};
     const ParseResult askew = parse(map, options);
     EXPECT_EQ(askew.scene.up_method, "given");
-    EXPECT_EQ(state(askew, 0.5, 0.9, 1.2), vdb::State::empty);
+    EXPECT_EQ(state_at(askew, middle), vdb::State::empty);
 }
 
 // Who cancels is heard within the stages that such a map takes long in.

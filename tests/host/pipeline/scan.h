@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/vectors.h"
 #include "host/io/files.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
 #include "lab/scores/score.h"
 #include "topple/device.h"
 #include "topple/parse.h"
+#include "vdb/voxel_scene.h"
 
 // Small scans of a furnished room whose truth is known.
 namespace topple::test {
@@ -36,6 +38,28 @@ inline PointCloud cloud_of_room(std::uint64_t seed) {
     camera.fuse_m = 0.025;
     scenes::fuse(camera, scan.sequence);
     return scan.sequence.cloud;
+}
+
+// What a parse says of a place, metres.
+inline vdb::State state_at(const ParseResult& result, const Vec3& place) {
+    const vdb::VoxelFrame frame = result.voxels->frame();
+    std::array<std::int32_t, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a)
+        at[a] = static_cast<std::int32_t>(
+            std::floor(dot(frame.grid_from_input[a], place) / frame.voxel_m));
+    return result.voxels->state_at(at[0], at[1], at[2]);
+}
+
+inline bool noted(const Scene& scene, const std::string& text) {
+    return std::ranges::any_of(
+        scene.notes, [&](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+// The object that can move whose centre of mass lies there; null: none does.
+inline const Object* movable_at(const Scene& scene, const Vec3& center, double within_m) {
+    for (const Object& o : scene.objects)
+        if (!o.grounded && length(minus(o.center_of_mass_m, center)) < within_m) return &o;
+    return nullptr;
 }
 
 // The default options, on this device.

@@ -3,6 +3,9 @@
 
 #include "clouds.h"
 #include "core/random.h"
+#include "testing.h"
+#include "topple/device.h"
+#include "topple/parse.h"
 
 // A cloud small enough to be parsed in a second, and spoilt in many ways.
 namespace topple::test {
@@ -80,6 +83,29 @@ struct SmallRoom {
                     room.add(face.at(double(a) / nu, double(b) / nv), face.part);
         }
         return room;
+    }
+};
+
+// What of it any test may look at that takes no parse of its own.
+class ParsedRoom : public ::testing::Test {
+  protected:
+    static ParseOptions quick() {
+        ParseOptions options;
+        options.device = device::open_device("native");
+        options.disturbances = {};
+        return options;
+    }
+    static const SmallRoom& room() {
+        static const SmallRoom made = [] {
+            SmallRoom scattered = SmallRoom::scattered();
+            scattered.cloud.dropped = 1234;  // as readers leave out points that are not finite
+            return scattered;
+        }();
+        return made;
+    }
+    static const ParseResult& result() {
+        static const ParseResult parsed = parse(room().cloud, quick());
+        return parsed;
     }
 };
 

@@ -234,11 +234,8 @@ TEST(Stays, RefusesWhatMakesNoSense) {
 
 // Of a parse: what is said to stay slides no farther than the slack, is not said to stay where it
 // is touched harder, and some touches are allowed.
-TEST(Stays, OfAParsedRoom) {
-    const SmallRoom room = SmallRoom::scattered();
-    ParseOptions options = on(device::open_device("native"));
-    options.disturbances = {};
-    const Scene scene = parse(room.cloud, options).scene;
+TEST_F(ParsedRoom, StaysWhereItIsTouchedGently) {
+    const Scene& scene = result().scene;
     int allowed = 0, asked = 0;
     for (const Object& o : scene.objects) {
         if (o.grounded) continue;

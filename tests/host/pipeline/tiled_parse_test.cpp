@@ -65,11 +65,31 @@ Output output_of(const ParseResult& result) {
     return output_of(result, folder.path() / "out");
 }
 
+// Of the blocks' progress: the shares of the whole at which they begin and end.
+struct Blocks {
+    double first = 1, last = 0;
+    void tell(const std::string& stage, double done) {
+        if (stage != "blocks") return;
+        first = std::min(first, done);
+        last = done;
+    }
+};
+
 class SlowTiles : public ::testing::Test {
   protected:
     static void SetUpTestSuite() {
         folder_ = new scenes::TemporaryFolder("topple_tiles");
-        result_ = new ParseResult(parse(building(), coarse()));
+        ParseOptions options = coarse();
+        options.device = device::open_device("native", 3);
+        options.progress = [&](const std::string& name, double done) {
+            callers_.insert(std::this_thread::get_id());
+            blocks_.tell(name, done);
+        };
+        options.cancelled = [&] {
+            callers_.insert(std::this_thread::get_id());
+            return false;
+        };
+        result_ = new ParseResult(parse(building(), options));
         output_ = new Output(output_of(*result_, first_output()));
     }
     static void TearDownTestSuite() {
@@ -81,6 +101,8 @@ class SlowTiles : public ::testing::Test {
     static inline const scenes::TemporaryFolder* folder_ = nullptr;
     static inline const ParseResult* result_ = nullptr;
     static inline const Output* output_ = nullptr;
+    static inline std::set<std::thread::id> callers_;  // of another's calls, it would be a race
+    static inline Blocks blocks_;
 };
 
 TEST_F(SlowTiles, EveryPointComesBackInItsPlace) {
@@ -97,31 +119,21 @@ TEST_F(SlowTiles, EveryPointComesBackInItsPlace) {
     EXPECT_TRUE(fs::exists(first_output() / "report.html"));
 }
 
-TEST_F(SlowTiles, MemoryAndThreadsChangeNothing) {
+TEST_F(SlowTiles, CallbacksAreCalledOnTheCallersThread) {
+    EXPECT_EQ(callers_, std::set{std::this_thread::get_id()});
+    EXPECT_GT(blocks_.last, blocks_.first + 0.1);
+}
+
+// Of many blocks, of few and of one.
+TEST_F(SlowTiles, TilesMemoryAndThreadsChangeNothing) {
     ParseOptions options = coarse();
     options.device = device::open_device("native", 1);
     options.max_memory_bytes = std::uint64_t{700} << 20;
+    options.tile_m = 10;
     EXPECT_TRUE(output_of(parse(building(), options)) == *output_);
-}
-
-TEST_F(SlowTiles, CallbacksAreCalledOnTheCallersThread) {
-    ParseOptions options = coarse();
-    options.device = device::open_device("native", 3);
-    std::set<std::thread::id> threads;  // of another's calls, it would be a race
-    double first = 1, last = 0;         // of the blocks, as shares of the whole
-    options.progress = [&](const std::string& name, double done) {
-        threads.insert(std::this_thread::get_id());
-        if (name != "blocks") return;
-        first = std::min(first, done);
-        last = done;
-    };
-    options.cancelled = [&] {
-        threads.insert(std::this_thread::get_id());
-        return false;
-    };
-    parse(building(), options);
-    EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
-    EXPECT_GT(last, first + 0.1);
+    options = coarse();
+    options.tile_m = 100;
+    EXPECT_TRUE(output_of(parse(building(), options)) == *output_);
 }
 
 TEST_F(SlowTiles, AStoppedRunGoesOnWhereItWas) {
@@ -129,13 +141,9 @@ TEST_F(SlowTiles, AStoppedRunGoesOnWhereItWas) {
     ParseOptions options = coarse();
     options.work_folder = folder.path() / "work";
     // Stops within the blocks: the next run finds some of them done.
-    double first = 1, done = 0;
-    options.progress = [&](const std::string& name, double share) {
-        if (name != "blocks") return;
-        first = std::min(first, share);
-        done = share;
-    };
-    options.cancelled = [&] { return done > first + 0.1; };
+    Blocks stopped;
+    options.progress = [&](const std::string& name, double done) { stopped.tell(name, done); };
+    options.cancelled = [&] { return stopped.last > stopped.first + 0.1; };
     EXPECT_THROW(parse(building(), options), Error);
     const auto blocks = [&] {
         std::vector<fs::path> found;
@@ -180,14 +188,6 @@ double share_together(const std::vector<std::int32_t>& a, const std::vector<std:
         together += most;
     }
     return static_cast<double>(together) / static_cast<double>(a.size());
-}
-
-TEST_F(SlowTiles, OneTileAndManyFindTheSame) {
-    ParseOptions options = coarse();
-    for (const double tile_m : {10.0, 100.0}) {
-        options.tile_m = tile_m;
-        EXPECT_TRUE(output_of(parse(building(), options)) == *output_) << tile_m;
-    }
 }
 
 // Growing of surfaces and estimates of free space reach as far as a block sees: what is found near
