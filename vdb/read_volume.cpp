@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/room_measures.h"
-#include "io/mapped_file.h"
+#include "io/open_file.h"
 #include "topple/error.h"
 #include "vdb/volume_checks.h"
 

@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "core/descriptor.h"
+
 namespace topple::child {
 namespace {
 
@@ -49,14 +51,11 @@ std::uint64_t files_of(long version) {
 }
 
 void allow(int ruleset, const std::filesystem::path& path, std::uint64_t rights) {
-    const int descriptor = ::open(path.c_str(), O_PATH | O_CLOEXEC);
-    if (descriptor < 0) return;
+    const Descriptor open(::open(path.c_str(), O_PATH | O_CLOEXEC));
     struct stat status {};
-    if (::fstat(descriptor, &status) == 0) {
-        const Beneath rule{S_ISDIR(status.st_mode) ? rights : rights & of_a_file, descriptor};
-        ::syscall(add_rule, ruleset, rule_path_beneath, &rule, 0);
-    }
-    ::close(descriptor);
+    if (open.get() < 0 || ::fstat(open.get(), &status) != 0) return;
+    const Beneath rule{S_ISDIR(status.st_mode) ? rights : rights & of_a_file, open.get()};
+    ::syscall(add_rule, ruleset, rule_path_beneath, &rule, 0);
 }
 
 void take_on(const Reach& reach) {

@@ -18,6 +18,7 @@
 
 #include "child/answer_head.h"
 #include "child/environment.h"
+#include "core/descriptor.h"
 #include "topple/version.h"
 
 namespace topple::child {
@@ -37,29 +38,10 @@ struct NotStarted {
     throw NotStarted{what + std::strerror(error) + (limited ? "; raise the limits (ulimit)" : "")};
 }
 
-class Descriptor {
-  public:
-    explicit Descriptor(int value) : value_(value) {}
-    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-    Descriptor& operator=(Descriptor&&) = delete;
-    ~Descriptor() { close(); }
-    void close() {
-        if (value_ >= 0) ::close(value_);
-        value_ = -1;
-    }
-    int get() const { return value_; }
-    int take() { return std::exchange(value_, -1); }
-
-  private:
-    int value_;
-};
-
 // Above those that the child gets, so that giving it one does not overwrite another.
-Descriptor moved_up(int descriptor) {
-    const int up = ::fcntl(descriptor, F_DUPFD_CLOEXEC, life_descriptor + 1);
-    const int error = errno;
-    ::close(descriptor);
-    if (up < 0) not_started("no descriptor: ", error);
+Descriptor moved_up(const Descriptor& low) {
+    const int up = ::fcntl(low.get(), F_DUPFD_CLOEXEC, life_descriptor + 1);
+    if (up < 0) not_started("no descriptor: ", errno);
     return Descriptor(up);
 }
 
@@ -207,11 +189,11 @@ Ended run_started(const std::string& program, const std::vector<std::string>& ta
                   const Limits& limits, const std::function<void()>& poll) {
     const int memory = ::memfd_create("topple-answer", MFD_CLOEXEC | MFD_ALLOW_SEALING);
     if (memory < 0) not_started("no memory to share: ", errno);
-    Descriptor answer = moved_up(memory);
+    Descriptor answer = moved_up(Descriptor(memory));
     int pipe[2];
     if (::pipe2(pipe, O_CLOEXEC) != 0) not_started("no pipe: ", errno);
     const Descriptor alive(pipe[0]);
-    Descriptor life = moved_up(pipe[1]);
+    Descriptor life = moved_up(Descriptor(pipe[1]));
     std::vector<std::string> words{program, version, std::to_string(::getpid()),
                                    std::to_string(limits.memory_bytes),
                                    std::to_string(limits.cpu_s)};
@@ -219,7 +201,7 @@ Ended run_started(const std::string& program, const std::vector<std::string>& ta
     Child child(Spawning().start(
         program, words, answer.get(), life.get(),
         limits.whole_environment ? std::nullopt : std::optional(plain_environment())));
-    life.close();
+    life = Descriptor();
     const auto start = std::chrono::steady_clock::now();
     pollfd ends{alive.get(), POLLIN, 0};
     bool over = false;
@@ -240,7 +222,7 @@ Ended run_started(const std::string& program, const std::vector<std::string>& ta
     AnswerHead head;
     const bool begun =
         ::pread(answer.get(), &head, sizeof(head), 0) == sizeof(head) && head.magic == begun_magic;
-    Answer got(answer.take());
+    Answer got(answer.release());
     if (got.whole()) return {std::move(got), ""};
     if (const int code = begun ? 0 : child.loader_failed()) {
         return {Answer(),

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 
+#include "core/descriptor.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -84,11 +85,9 @@ void FileWriter::close() {
 }
 
 void sync_folder(const std::filesystem::path& folder) {
-    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    const bool done = descriptor >= 0 && (::fsync(descriptor) == 0 || has_no_sync(errno));
-    const int reason = errno;
-    if (descriptor >= 0) ::close(descriptor);
-    if (!done) can_not_write(folder, reason);
+    const Descriptor open(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (open.get() < 0 || (::fsync(open.get()) != 0 && !has_no_sync(errno)))
+        can_not_write(folder, errno);
 }
 
 void write_file(const std::filesystem::path& file, std::string_view text) {

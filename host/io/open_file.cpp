@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "io/open_file.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <linux/openat2.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -101,10 +103,6 @@ std::string why_not_opened(int error) {
     return std::string("can't be read: ") + std::strerror(error);
 }
 
-Descriptor::~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-}
-
 // Opening a FIFO without O_NONBLOCK would wait for a writer.
 OpenFile::OpenFile(const FileName& file)
     : name(file), descriptor(file.open(O_RDONLY | O_NONBLOCK)) {
@@ -150,6 +148,48 @@ FileBytes read_file(const FileName& name, std::uint64_t limit) {
                        std::to_string(bytes.size) + " found");
     }
     return bytes;
+}
+
+MappedFile::MappedFile(const FileName& name) {
+    const OpenFile open(name);
+    if (open.size == 0) fail(name.path(), "is empty (0 bytes)");
+    size_ = static_cast<std::size_t>(open.size);
+    void* const at = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, open.descriptor.get(), 0);
+    if (at == MAP_FAILED)
+        fail(name.path(), std::string("can't be mapped: ") + std::strerror(errno));
+    ::madvise(at, size_, MADV_SEQUENTIAL);
+    data_ = static_cast<const char*>(at);
+}
+
+MappedFile::~MappedFile() {
+    ::munmap(const_cast<char*>(data_), size_);
+}
+
+void MappedFile::release() const {
+    ::madvise(const_cast<char*>(data_), size_, MADV_DONTNEED);
+}
+
+std::vector<std::string> folder_names(const FileName& folder, std::error_code& error) {
+    error.clear();
+    const auto close = [](DIR* open) { ::closedir(open); };
+    Descriptor descriptor(folder.open(O_RDONLY | O_DIRECTORY));
+    const std::unique_ptr<DIR, decltype(close)> open(
+        descriptor.get() < 0 ? nullptr : ::fdopendir(descriptor.get()), close);
+    std::vector<std::string> names;
+    if (!open) {
+        error.assign(errno, std::generic_category());
+        return names;
+    }
+    descriptor.release();  // the listing closes it
+    for (;;) {
+        errno = 0;
+        const dirent* entry = ::readdir(open.get());
+        if (!entry) break;
+        std::string name = entry->d_name;
+        if (name != "." && name != "..") names.push_back(std::move(name));
+    }
+    if (errno != 0) error.assign(errno, std::generic_category());
+    return names;
 }
 
 }  // namespace topple::io

@@ -3,12 +3,19 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
+#include <vector>
 
+#include "core/descriptor.h"
 #include "io/text.h"
 
 // The one way in which files of others are opened.
 namespace topple::io {
+
+using topple::Descriptor;
 
 // A file's name, by whose word it is taken. What the user names is taken as it stands, links and
 // all. What a scan names, or a folder of one, is looked for in that folder only: links that lead
@@ -34,23 +41,6 @@ class FileName {
     bool may_be_link_ = true;
 };
 
-// Closes the descriptor when it goes.
-class Descriptor {
-  public:
-    explicit Descriptor(int value = -1) : value_(value) {}
-    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(value_, other.value_);
-        return *this;
-    }
-    ~Descriptor();
-    int get() const { return value_; }
-    int release() { return std::exchange(value_, -1); }
-
-  private:
-    int value_;
-};
-
 // A regular file, open for reading: what is asked of it from here on is asked of the descriptor,
 // whatever has its name by then. Never waits: FIFOs and devices are refused. Throws Error(input).
 struct OpenFile {
@@ -65,6 +55,29 @@ struct OpenFile {
 
 // As the one of text.h.
 FileBytes read_file(const FileName& file, std::uint64_t limit = UINT64_MAX);
+
+// A regular file's bytes, mapped and not held: for files larger than memory that are read once from
+// front to back. Throws Error(input) where the file is missing, no regular file, unreadable or
+// empty. Nobody may shorten the file meanwhile: reading beyond its end is a bus error.
+class MappedFile {
+  public:
+    explicit MappedFile(const FileName& name);
+    ~MappedFile();
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
+    std::string_view text() const { return {data_, size_}; }
+    // Gives back the memory of what was read so far; what is read again is mapped again.
+    void release() const;
+
+  private:
+    const char* data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+// The names in a folder but "." and "..", in no order; `error` says why it can't be listed. Unlike
+// std::filesystem::directory_iterator, which ends the program, it throws std::bad_alloc.
+std::vector<std::string> folder_names(const FileName& folder, std::error_code& error);
 
 // openat() below `folder`, which stays beneath it; for kernels without openat2() and for tests the
 // second, which follows no link at all. errno is EXDEV where a link or name leads out, ELOOP where

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/pending_outputs.h"
 #include "io/replace_file.h"
 #include "io/text.h"

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <utility>
 
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/pending_outputs.h"
 #include "io/text.h"
 

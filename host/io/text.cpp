@@ -39,6 +39,10 @@ std::string counted(std::uint64_t count, const char* noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+std::string size_text(std::uint64_t width, std::uint64_t height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+}
+
 std::string vector_text(const std::array<double, 3>& v) {
     return std::string("(") + short_number(v[0]) + ", " + short_number(v[1]) + ", " +
            short_number(v[2]) + ")";

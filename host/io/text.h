@@ -29,6 +29,9 @@ std::string path_text(const std::filesystem::path& path);
 
 // "3 points", "1 point".
 std::string counted(std::uint64_t count, const char* noun);
+// "640 x 480".
+std::string size_text(std::uint64_t width, std::uint64_t height);
+
 // "(1, 2, 0.5)", each as short_number().
 std::string vector_text(const std::array<double, 3>& v);
 // Two digits, or all before the point, without an exponent; below half a thousandth it is nothing.

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/process_memory.h"
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/text.h"
 #include "topple/error.h"
 

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "io/mapped_file.h"
+#include "io/open_file.h"
 #include "io/text.h"
 #include "points/formats/ply_file.h"
 

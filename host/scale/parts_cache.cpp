@@ -10,7 +10,7 @@
 
 #include "core/build_id.h"
 #include "device/cancelling.h"
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/replace_file.h"
 #include "io/text.h"
 #include "scale/binary_file.h"

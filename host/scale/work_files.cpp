@@ -8,7 +8,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/replace_file.h"
 #include "io/text.h"
 #include "scale/binary_file.h"

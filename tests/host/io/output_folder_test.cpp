@@ -8,7 +8,6 @@
 
 #include "files.h"
 #include "io/file_writer.h"
-#include "io/folder_names.h"
 #include "io/open_file.h"
 #include "io/pending_outputs.h"
 #include "io/replace_file.h"
@@ -44,15 +43,30 @@ class NotRoot {
     bool was_root_;
 };
 
+std::size_t entries(const fs::path& folder) {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+// How a process of its own ends that does this.
+template <class Do>
+int status_of(const Do& act) {
+    const pid_t child = fork();
+    EXPECT_GE(child, 0);
+    if (child == 0) {
+        act();
+        _exit(0);
+    }
+    int status = 0;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    return status;
+}
+
 class Output : public test::Files {
   protected:
     void write_result(const OutputFolder& out, const std::string& points) {
         write_file(out.folder() / "points.ply", points);
         write_file(out.folder() / "scene.json", our_scene);
-    }
-    std::size_t entries(const fs::path& folder) const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
     }
 };
 
@@ -214,10 +228,7 @@ TEST_F(Output, where_only_the_folder_itself_is_writable) {
 
 // A child is interrupted while it writes; its handler cleans up.
 TEST_F(Output, an_interrupted_run_leaves_nothing) {
-    const auto destination = path("a/out");
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
+    const int status = status_of([destination = path("a/out")] {
         signal(SIGINT, [](int) {
             remove_pending_outputs();
             _exit(130);
@@ -226,42 +237,29 @@ TEST_F(Output, an_interrupted_run_leaves_nothing) {
         write_file(out.folder() / "points.ply", "half");
         write_file(out.folder() / "volume.vdb", "half");
         raise(SIGINT);
-        _exit(0);
-    }
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
+    });
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 130);
     EXPECT_EQ(entries(folder_), 0u);
 }
 
-class Staging : public test::Files {
-  protected:
-    std::size_t entries() const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-    }
-};
+class Staging : public test::Files {};
 
 TEST_F(Staging, of_a_killed_process_goes_with_the_next) {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
+    const int status = status_of([&] {
         const StagingFolder half(folder_);
         fs::create_directory(half.path() / "out");
         write_file(half.path() / "out/points.ply", "half");
         raise(SIGKILL);
-    }
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
+    });
     ASSERT_TRUE(WIFSIGNALED(status));
-    ASSERT_EQ(entries(), 1u);
+    ASSERT_EQ(entries(folder_), 1u);
     // What only looks so, and what is at work, stays.
     write(".topple-abcdefghij/thesis.tex", "years");
     write(".topple-abcdefghik/lock", "topple staging folder\n");  // others could look into it
     const StagingFolder alive(folder_);
     const StagingFolder next(folder_);
-    EXPECT_EQ(entries(), 4u);
+    EXPECT_EQ(entries(folder_), 4u);
     EXPECT_TRUE(fs::exists(path(".topple-abcdefghij/thesis.tex")));
     EXPECT_TRUE(fs::exists(alive.path()));
     EXPECT_EQ(fs::status(next.path()).permissions(), fs::perms::owner_all);
@@ -279,7 +277,7 @@ TEST_F(Staging, a_file_replaces_its_like_and_nothing_else) {
     EXPECT_EQ(bytes_of_file(path("victim")), "a letter");
     check_own_file(path("none"), "mark");
     expect_input_error([&] { check_own_file(path("victim"), "mark", "is no cache"); }, {"victim"});
-    EXPECT_EQ(entries(), 4u);
+    EXPECT_EQ(entries(folder_), 4u);
 }
 
 class OpenedFile : public test::Files {

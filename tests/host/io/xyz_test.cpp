@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "clouds.h"
-#include "io/mapped_file.h"
+#include "io/open_file.h"
 #include "las_files.h"
 #include "points/formats/read_cloud.h"
 
