@@ -12,7 +12,7 @@
 
 #include "core/number_text.h"
 #include "io/text.h"
-#include "points/memory_stream.h"
+#include "points/frame_stream.h"
 #include "points/sensor_places.h"
 #include "points/virtual_views.h"
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "topple/input.h"
 
@@ -18,6 +20,20 @@ class FrameStream {
     virtual DepthFrame load_coloured(std::size_t i) const { return load(i); }
     // Whether frames may be loaded on the thread that called the parse alone, one after the other.
     virtual bool one_by_one() const { return false; }
+};
+
+// Depth frames that are held.
+class MemoryStream final : public FrameStream {
+  public:
+    MemoryStream(const Intrinsics& intrinsics, std::vector<DepthFrame> frames)
+        : intrinsics_(intrinsics), frames_(std::move(frames)) {}
+    const Intrinsics& intrinsics() const override { return intrinsics_; }
+    std::size_t size() const override { return frames_.size(); }
+    DepthFrame load(std::size_t i) const override { return frames_[i]; }
+
+  private:
+    Intrinsics intrinsics_;
+    std::vector<DepthFrame> frames_;
 };
 
 }  // namespace topple

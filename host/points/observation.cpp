@@ -3,42 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <optional>
-#include <span>
 #include <utility>
 
-#include "core/depth_noise.h"
-#include "core/ranked.h"
 #include "core/solid_cells.h"
 #include "device/cancelling.h"
 #include "geometry/surfels.h"
 #include "io/text.h"
 #include "points/apart/read_scan.h"
-#include "points/caller_frames.h"
 #include "points/caller_points.h"
 #include "points/cloud_views.h"
 #include "points/formats/frame_sequence.h"
 #include "points/formats/octomap.h"
 #include "points/formats/read_cloud.h"
-#include "points/formats/rigid_pose.h"
-#include "points/frame_checks.h"
 #include "points/given_attributes.h"
-#include "points/limited_fusion.h"
-#include "points/memory_stream.h"
 #include "points/scale_checks.h"
 #include "points/single_scan.h"
 #include "points/work_check.h"
 #include "vdb/read_volume.h"
 
 namespace topple {
-namespace {
-
-std::vector<Vec3> places_of(std::span<const Mat4> poses) {
-    std::vector<Vec3> places;
-    for (const Mat4& m : poses) places.push_back({m[3], m[7], m[11]});
-    return places;
-}
 
 void note_single_frame(Observation& out) {
     out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
@@ -48,123 +32,15 @@ void note_colours(bool given, Observation& out) {
     if (!given) out.notes.emplace_back(no_colours_note);
 }
 
-// Fuses out.frames, called `source`. poses: as they were given, of each; none of a single frame.
-void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std::string& source,
-                 const ParseOptions& options, Observation& out) {
-    const Intrinsics& k = out.frames->intrinsics();
-    out.by_sensors = true;
-    // Before anything is made of them.
-    check_camera_steps(places_of(poses), source);
-    const double depth_m =
-        typical_depth(k, out.frames->size(), [&](std::size_t f) { return out.frames->load(f); });
-    check_readings(k, out.frames->size(), depth_m, source, out.origin);
-    out.cell_m = cell_for_frames(k, depth_m);
-    LimitedFusion fusion({k, out.frames->size(), depth_m, source, out.origin}, out.cell_m, options,
-                         device.threads().threads());
-    geometry::PoseComparison comparison(k, poses, depth_m);
-    const auto count = static_cast<double>(out.frames->size());
-    constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
-    const auto tell = [&](double done) {
-        if (options.progress) options.progress("ingest", done);
-    };
-    const auto add = [&](const DepthFrame& frame, std::size_t f) {
-        end_if_cancelled(options);
-        fusion.add(frame);
-        comparison.add(frame, f);
-        tell(added_share * static_cast<double>(f + 1) / count);
-    };
-    for_each_frame(*out.frames, device.threads(), add, true);
-    note_principal_point(k, out.origin, out.doubts);
-    // First, and at once: the shards that such poses give take long.
-    if (const std::string note = pose_note(comparison, poses.size(), out.origin); !note.empty()) {
-        out.doubts.insert(out.doubts.begin(), note);
-        if (options.notice) options.notice(note);
-    }
-    double polled = 0;
-    geometry::FusedCloud fused = fusion.finish([&] {
-        end_if_cancelled(options);
-        tell(added_share + (1 - added_share) * std::min(1.0, ++polled / polls));
-    });
-    out.own = std::move(fused.cloud);
-    out.cloud = out.own;
-    out.viewpoints = std::move(fused.viewpoints);
-    out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
-    if (poses.empty()) note_single_frame(out);
-    note_colours(!out.cloud.red.empty(), out);
-}
+namespace {
 
-Observation ingest_folder(device::Device& device, const std::filesystem::path& folder,
-                          const ParseOptions& options) {
-    auto stream = std::make_unique<io::FrameSequence>(io::FrameSequence::open(folder));
-    const io::FrameSequence& sequence = *stream;  // lives as long as what is returned
+Observation observation_of(PointCloud cloud, ScanOrigin origin) {
     Observation out;
-    out.origin = ScanOrigin::frames_folder;
-    out.camera_up = sequence.mean_camera_up();
-    out.doubts = sequence.colours().notes();
-    out.frames = std::move(stream);
-    fuse_frames(device, sequence.posed() ? std::span(sequence.poses()) : std::span<const Mat4>(),
-                folder.string(), options, out);
+    out.origin = origin;
+    out.own = std::move(cloud);
+    out.cloud = out.own;
     return out;
 }
-
-}  // namespace
-
-double typical_depth(const Intrinsics& k, std::size_t count,
-                     const std::function<DepthFrame(std::size_t)>& load) {
-    std::vector<double> depths;
-    const std::size_t step = std::max<std::size_t>(1, count / 8);
-    for (std::size_t f = 0; f < count; f += step) {
-        const DepthFrame frame = load(f);
-        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
-            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
-        }
-    }
-    return upper_median(depths);
-}
-
-double cell_for_frames(const Intrinsics& k, double typical_depth_m) {
-    if (typical_depth_m <= 0) return 0.01;
-    const double noise = depth_sigma(typical_depth_m);
-    return std::clamp(std::max(1.5 * typical_depth_m / k.fx, 1.2 * noise), least_cell_m, 0.015);
-}
-
-std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin) {
-    const Intrinsics& k = frames.intrinsics();
-    return depth_scale_hint(
-        frames.size(), k.depth_scale,
-        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); }), origin);
-}
-
-void for_each_frame(const FrameStream& frames, ThreadPool& threads,
-                    const std::function<void(DepthFrame, std::size_t)>& use, bool coloured) {
-    const auto load = [&](std::size_t i) {
-        return coloured ? frames.load_coloured(i) : frames.load(i);
-    };
-    if (frames.one_by_one()) {
-        for (std::size_t i = 0; i < frames.size(); ++i) use(load(i), i);
-        return;
-    }
-    struct Decoded {
-        DepthFrame frame;
-        std::exception_ptr error;
-    };
-    for (std::size_t first = 0; first < frames.size(); first += threads.threads()) {
-        std::vector<Decoded> batch(std::min<std::size_t>(threads.threads(), frames.size() - first));
-        threads.each(batch.size(), 1, [&](std::size_t i) {
-            try {
-                batch[i].frame = load(first + i);
-            } catch (...) {
-                batch[i].error = std::current_exception();
-            }
-        });
-        for (std::size_t i = 0; i < batch.size(); ++i) {
-            if (batch[i].error) std::rethrow_exception(batch[i].error);
-            use(std::move(batch[i].frame), first + i);
-        }
-    }
-}
-
-namespace {
 
 void check_count(const CloudView& cloud) {
     if (cloud.size() >= least_voxels) return;
@@ -266,15 +142,12 @@ void check_path(const std::filesystem::path& input) {
 
 Observation observe_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options,
                           ScanOrigin origin) {
-    Observation out;
-    out.origin = origin;
-    out.own = std::move(cloud);
+    Observation out = observation_of(std::move(cloud), origin);
     if (out.own.height > 1) {
         out.image_width = out.own.width;
         out.image_height = out.own.height;
         if (out.own.dropped > 0) out.index.assign(out.own.pixel.begin(), out.own.pixel.end());
     }
-    out.cloud = out.own;
     look_at_cloud(device, options, out);
     return out;
 }
@@ -302,34 +175,9 @@ Observation observe_view(device::Device& device, const CloudView& cloud,
     return out;
 }
 
-Observation observe_frames(device::Device& device, const FramesView& frames,
-                           const ParseOptions& options) {
-    if (options.unit_m != 1) {
-        throw Error(ErrorKind::usage,
-                    "ParseOptions::unit_m is for files; depth frames have their unit in their "
-                    "intrinsics, as "
-                    "depth_scale");
-    }
-    auto stream = std::make_unique<CallerFrames>(frames);
-    const CallerFrames& given = *stream;  // lives as long as what is returned
-    Observation out;
-    out.origin = ScanOrigin::frames_in_memory;
-    out.camera_up = io::mean_camera_up(given.poses());
-    out.doubts = given.notes();
-    out.frames = std::move(stream);
-    fuse_frames(device, given.posed() ? std::span(given.poses()) : std::span<const Mat4>(),
-                given.source(), options, out);
-    if (out.cloud.size() == 0)
-        throw Error(ErrorKind::input, given.source() + ": no points were found; " +
-                                          depth_scale_hint(given, out.origin));
-    return out;
-}
-
 Observation ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
-    Observation out;
+    Observation out = observation_of(std::move(cloud), ScanOrigin::cloud_file);
     out.cell_m = cell_m;
-    out.own = std::move(cloud);
-    out.cloud = out.own;
     look_from_free_places(device, out);
     return out;
 }
@@ -355,10 +203,7 @@ std::optional<geometry::SceneFrame> frame_of_map(const std::optional<Vec3>& give
 
 // A volume's surface, and its free space beside what virtual views of the surface find.
 Observation ingest_volume(device::Device& device, ScannedMap map, const ParseOptions& options) {
-    Observation out;
-    out.origin = ScanOrigin::map_file;
-    out.own = std::move(map.cloud);
-    out.cloud = out.own;
+    Observation out = observation_of(std::move(map.cloud), ScanOrigin::map_file);
     look_at_cloud(device, options, out);
     if (!map.space.free.empty()) out.space = std::move(map.space);
     return out;
@@ -366,10 +211,7 @@ Observation ingest_volume(device::Device& device, ScannedMap map, const ParseOpt
 
 // An OctoMap: what is free and what nobody saw is known, and its voxels are the grid's.
 Observation ingest_octomap(ScannedMap map, const ParseOptions& options) {
-    Observation out;
-    out.origin = ScanOrigin::map_file;
-    out.own = std::move(map.cloud);
-    out.cloud = out.own;
+    Observation out = observation_of(std::move(map.cloud), ScanOrigin::map_file);
     check_count(out.cloud);
     check_spacing(out.cloud, map.space.voxel_m);
     out.doubts = out.own.notes;
@@ -397,18 +239,7 @@ ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& opt
 Observation observe(device::Device& device, const std::filesystem::path& input,
                     const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
-    if (io::looks_like_sequence(input)) {
-        if (options.unit_m != 1) {
-            throw Error(ErrorKind::usage,
-                        "ParseOptions::unit_m is for point clouds, meshes and maps; depth frames "
-                        "have their unit in "
-                        "intrinsics.json, as depth_scale");
-        }
-        Observation out = ingest_folder(device, input, options);
-        if (out.cloud.size() == 0)
-            io::fail(input, "no points were found; " + depth_scale_hint(*out.frames, out.origin));
-        return out;
-    }
+    if (io::looks_like_sequence(input)) return observe_folder(device, input, options);
     ScannedMap map = read_input(input, options);
     if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
     if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map), options);

@@ -84,6 +84,10 @@ double typical_depth(const Intrinsics& intrinsics, std::size_t frames,
 // From then on the normals that the cloud brought count as not given.
 void leave_out_normals(Observation& input);
 
+// Says that what is seen is of one frame, or that it has no colours.
+void note_single_frame(Observation& out);
+void note_colours(bool given, Observation& out);
+
 // What to look at where frames show nothing that makes sense; see scale_checks.h.
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin);
 
@@ -99,6 +103,10 @@ Observation observe_cloud(device::Device& device, PointCloud cloud, const ParseO
 // it is made.
 Observation observe_view(device::Device& device, const CloudView& cloud,
                          const ParseOptions& options);
+
+// A folder of depth frames.
+Observation observe_folder(device::Device& device, const std::filesystem::path& folder,
+                           const ParseOptions& options);
 
 // The frames must stay as long as what is returned.
 Observation observe_frames(device::Device& device, const FramesView& frames,
