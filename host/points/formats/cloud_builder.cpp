@@ -124,21 +124,20 @@ void CloudBuilder::pass_on() {
     (*sink_)(std::move(next));
 }
 
-void CloudBuilder::add(const std::array<double, 3>& point, const std::array<double, 3>& normal,
-                       const std::array<double, 3>& colour,
-                       const std::array<double, 3>& viewpoint) {
+void CloudBuilder::add(const FilePoint& point) {
+    const auto& [at, normal, colour, viewpoint] = point;
     if (sink_ && cloud_.size() == portion) pass_on();
     const auto index = seen_++;
-    if (!finite(point)) {
+    if (!finite(at)) {
         ++cloud_.dropped;
         return;
     }
-    for (const double value : point) {
+    for (const double value : at) {
         if (std::abs(value) > farthest_m) fail(file_, too_far(index, value));
     }
-    cloud_.x.push_back(static_cast<float>(point[0]));
-    cloud_.y.push_back(static_cast<float>(point[1]));
-    cloud_.z.push_back(static_cast<float>(point[2]));
+    cloud_.x.push_back(static_cast<float>(at[0]));
+    cloud_.y.push_back(static_cast<float>(at[1]));
+    cloud_.z.push_back(static_cast<float>(at[2]));
     // Whether the cloud is organised shows at the end; 2^32 pixels and more are refused before.
     if (!sink_) cloud_.pixel.push_back(static_cast<std::uint32_t>(index));
     colours_.add(colour, cloud_);

@@ -39,6 +39,11 @@ class ColourScale {
     std::uint64_t bright_ = 0;                   // of those, with a value above 0
 };
 
+// What a file has of a point: the colour as it stands there, red, green and blue.
+struct FilePoint {
+    std::array<double, 3> at{}, normal{}, colour{}, viewpoint{};
+};
+
 // What a file's points have beside coordinates.
 struct CloudFields {
     bool normals = false;
@@ -55,12 +60,10 @@ class CloudBuilder {
     CloudBuilder(const std::filesystem::path& file, std::uint64_t promised, CloudFields fields,
                  const CloudSink* sink = nullptr);
 
-    // Adds point number seen(). `normal` is read with normals only; one that is not finite or has
-    // no length is stored as 0, 0, 0. `colour` is read with colours only, red, green and blue as
-    // the file has them; `viewpoint` with viewpoints only. Throws Error(input) for a coordinate
-    // beyond 1e6 m.
-    void add(const std::array<double, 3>& point, const std::array<double, 3>& normal = {},
-             const std::array<double, 3>& colour = {}, const std::array<double, 3>& viewpoint = {});
+    // Adds point number seen(). Its normal, colour and viewpoint are looked at where `fields` has
+    // them; a normal that is not finite or has no length is stored as 0, 0, 0. Throws Error(input)
+    // for a coordinate beyond 1e6 m.
+    void add(const FilePoint& point);
     std::uint64_t seen() const { return seen_; }
 
     // All points are in. `width`, `height` > 0: the points are the pixels of one image, row by row.

@@ -7,7 +7,7 @@
 #include <map>
 #include <system_error>
 
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -144,11 +144,8 @@ ColourFrames ColourFrames::open(const fs::path& folder, const std::vector<FileNa
 
 std::optional<std::string> ColourCamera::size_fault(std::uint32_t width, std::uint32_t height,
                                                     const std::string& mend) const {
-    const std::string is =
-        "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, but ";
-    const auto size = [](const Intrinsics& k) {
-        return std::to_string(k.width) + " x " + std::to_string(k.height);
-    };
+    const std::string is = "is " + size_text(width, height) + " pixels, but ";
+    const auto size = [](const Intrinsics& k) { return size_text(k.width, k.height); };
     if (own) {
         if (width == own->width && height == own->height) return std::nullopt;
         return is + "its intrinsics say " + size(*own);

@@ -23,10 +23,9 @@ using SizeCheck = std::function<void(std::uint32_t, std::uint32_t)>;
 ColourImage decode_colour_image(const std::filesystem::path& file, std::string_view bytes,
                                 const SizeCheck& check = nullptr);
 
-// Its parts.
 inline constexpr std::uint64_t most_image_pixels = std::uint64_t{1} << 26;
-ColourImage decode_colour_png(const std::filesystem::path& file, std::string_view bytes,
-                              const SizeCheck& check);
+
+// Its part for JPEG.
 ColourImage decode_colour_jpeg(const std::filesystem::path& file, std::string_view bytes,
                                const SizeCheck& check);
 

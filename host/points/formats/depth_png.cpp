@@ -36,9 +36,8 @@ std::vector<std::uint16_t> read_depth_png(const FileName& name, std::uint32_t wi
                        " PNG; a depth image must be 16-bit grey (value / depth_scale = metres)");
     }
     if (png.width() != width || png.height() != height) {
-        fail(file, "is " + std::to_string(png.width()) + " x " + std::to_string(png.height()) +
-                       " pixels, but intrinsics.json says " + std::to_string(width) + " x " +
-                       std::to_string(height));
+        fail(file, "is " + size_text(png.width(), png.height()) +
+                       " pixels, but intrinsics.json says " + size_text(width, height));
     }
     png.turn([](png_structp p) {
         if (std::endian::native == std::endian::little) png_set_swap(p);

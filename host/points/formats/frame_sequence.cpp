@@ -5,7 +5,7 @@
 #include <string>
 #include <system_error>
 
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/text.h"
 #include "points/formats/rigid_pose.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "points/formats/gltf_checks.h"
-
 #include <fcntl.h>
 #include <sys/stat.h>
 
@@ -9,20 +7,20 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "io/json_text.h"
 #include "io/text.h"
+#include "points/formats/gltf.h"
 #include "points/formats/import_budget.h"
 
 namespace topple::io {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = Json;
 
 // The reader calls itself for each level of nodes.
 constexpr std::size_t most_generations = 256;
@@ -372,11 +370,12 @@ FileName file_beside(const fs::path& file, std::string_view uri) {
     return there;
 }
 
-void check_gltf(const fs::path& file, std::string_view text,
-                std::optional<std::uint64_t> binary_bytes) {
-    const json root = parse_json(file, text, "holds no JSON of glTF");
+json checked_gltf(const fs::path& file, std::string_view text,
+                  std::optional<std::uint64_t> binary_bytes) {
+    json root = parse_json(file, text, "holds no JSON of glTF");
     if (!root.is_object()) fail(file, "holds no glTF: its JSON is no object");
     GltfChecks(file, root, text.size(), binary_bytes).check();
+    return root;
 }
 
 }  // namespace topple::io

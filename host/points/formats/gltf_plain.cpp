@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "points/formats/gltf_plain.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "io/json_text.h"
 #include "io/text.h"
-#include "points/formats/gltf_checks.h"
+#include "points/formats/gltf.h"
 #include "points/formats/scalar.h"
 
 namespace topple::io {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = Json;
 
 constexpr std::uint64_t float_type = 5126, index_type = 5125;
 
@@ -28,36 +25,17 @@ std::uint64_t whole(const json& object, const char* key, std::uint64_t otherwise
 
 // The scalars of glTF's component types, from 5120 on.
 Scalar scalar_of(std::uint64_t component) {
-    switch (component) {
-        case 5120:
-            return Scalar::i8;
-        case 5121:
-            return Scalar::u8;
-        case 5122:
-            return Scalar::i16;
-        case 5123:
-            return Scalar::u16;
-        case 5125:
-            return Scalar::u32;
-        default:
-            return Scalar::f32;
-    }
+    constexpr std::array types{Scalar::i8,  Scalar::u8,  Scalar::i16, Scalar::u16,
+                               Scalar::f32, Scalar::u32, Scalar::f32};
+    return component >= 5120 && component < 5120 + types.size() ? types[component - 5120]
+                                                                : Scalar::f32;
 }
 
 // What a normalised integer of that type has for 1.
 double one_of(Scalar type) {
-    switch (type) {
-        case Scalar::i8:
-            return 127;
-        case Scalar::u8:
-            return 255;
-        case Scalar::i16:
-            return 32767;
-        case Scalar::u16:
-            return 65535;
-        default:
-            return 1;
-    }
+    if (type > Scalar::u16) return 1;
+    const bool is_signed = type == Scalar::i8 || type == Scalar::i16;
+    return (1 << (8 * bytes_of(type) - is_signed)) - 1;
 }
 
 std::string from_base64(const fs::path& file, std::string_view text) {
@@ -265,13 +243,12 @@ class PlainGltf {
 
 bool is_plain(const json& root) {
     const json none = json::array();
-    const auto at = [&](const char* key) { return root.contains(key) ? root.at(key) : none; };
-    const json accessors = at("accessors");
+    const json accessors = root.value("accessors", none);
     const auto whole_view = [](const json& accessor) {
         return accessor.contains("bufferView") && !accessor.contains("sparse");
     };
     if (!std::ranges::all_of(accessors, whole_view)) return false;
-    for (const json& mesh : at("meshes")) {
+    for (const json& mesh : root.value("meshes", none)) {
         for (const json& primitive : mesh.at("primitives")) {
             for (const auto& [name, accessor] : primitive.at("attributes").items()) {
                 if (name.starts_with("COLOR_") || name.starts_with("JOINTS_") ||
@@ -286,23 +263,42 @@ bool is_plain(const json& root) {
     return true;
 }
 
+struct GltfParts {
+    std::string_view text;
+    std::optional<std::string_view> binary;  // of a GLB, be it empty
+};
+
+GltfParts parts_of_glb(const fs::path& file, std::string_view bytes) {
+    const auto word = [&](std::uint64_t at) { return value_at<std::uint32_t>(bytes, at); };
+    if (bytes.size() < 20 || !bytes.starts_with("glTF"))
+        fail(file, "is no GLB: it doesn't start with \"glTF\"");
+    if (word(4) != 2) {
+        fail(file, "is GLB version " + std::to_string(word(4)) + "; version 2 is read");
+    }
+    if (word(8) != bytes.size() || word(12) > bytes.size() - 20) {
+        fail(file, "its header promises " + counted(word(8), "byte") + ", but the file has " +
+                       std::to_string(bytes.size()) + "; it is cut short or damaged");
+    }
+    const std::uint64_t next = 20 + std::uint64_t{word(12)};
+    std::uint64_t binary_bytes = 0;
+    if (bytes.size() - next >= 8) {
+        binary_bytes = word(next);
+        if (binary_bytes > bytes.size() - next - 8) fail(file, "its binary part is cut short");
+    }
+    return {bytes.substr(20, word(12)),
+            binary_bytes > 0 ? bytes.substr(next + 8, binary_bytes) : ""};
+}
+
 }  // namespace
 
 std::optional<std::string> plain_gltf(const fs::path& file, std::string_view bytes, bool glb) {
-    std::string_view text = bytes;
-    std::optional<std::string_view> binary;
-    if (glb) {
-        const auto word = [&](std::size_t at) {
-            return load_as<std::uint32_t>(bytes.data() + at, must_swap(false));
-        };
-        text = bytes.substr(20, word(12));
-        bytes.remove_prefix(20 + text.size());
-        if (bytes.size() >= 8) binary = bytes.substr(8, word(0));
-    }
-    json root = parse_json(file, text, "holds no JSON of glTF");
+    const GltfParts parts = glb ? parts_of_glb(file, bytes) : GltfParts{bytes, std::nullopt};
+    std::optional<std::uint64_t> binary_bytes;
+    if (parts.binary) binary_bytes = parts.binary->size();
+    json root = checked_gltf(file, parts.text, binary_bytes);
     try {
         if (is_plain(root)) return std::nullopt;
-        return PlainGltf(file, root, binary).glb();
+        return PlainGltf(file, root, parts.binary).glb();
     } catch (const json::exception& error) {
         fail(file, "its JSON is not as glTF's: " + json_problem(error));
     }

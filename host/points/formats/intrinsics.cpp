@@ -18,28 +18,23 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t most_pixels_a_side = 32768;
 constexpr std::uint64_t most_depth_pixels = std::uint64_t{1} << 24;
 
-double positive_number(const fs::path& file, const Json& json, const char* key,
-                       bool may_be_zero = false) {
+std::string no_side(const char* key, const std::string& value) {
+    return in_quotes(key) + " is " + value + ", but must be a whole number from 1 to " +
+           std::to_string(most_pixels_a_side);
+}
+
+double number(const fs::path& file, const Json& json, const char* key) {
     const auto found = json.find(key);
-    if (found == json.end()) fail(file, std::string("has no \"") + key + "\"");
-    if (!found->is_number()) {
-        fail(file, std::string("\"") + key + "\" must be a number, not " + found->type_name());
-    }
-    const double value = found->get<double>();
-    if (!std::isfinite(value) || value < 0 || (value == 0 && !may_be_zero)) {
-        fail(file, std::string("\"") + key + "\" is " + short_number(value) + ", but must be " +
-                       (may_be_zero ? "0 or more" : "above 0"));
-    }
-    return value;
+    if (found == json.end()) fail(file, "has no " + in_quotes(key));
+    if (!found->is_number())
+        fail(file, in_quotes(key) + " must be a number, not " + found->type_name());
+    return found->get<double>();
 }
 
 std::uint32_t side(const fs::path& file, const Json& json, const char* key) {
-    const double value = positive_number(file, json, key);
-    if (value != std::floor(value) || value > most_pixels_a_side) {
-        fail(file, std::string("\"") + key + "\" is " + short_number(value) +
-                       ", but must be a whole number from 1 to " +
-                       std::to_string(most_pixels_a_side));
-    }
+    const double value = number(file, json, key);
+    if (!(value >= 1 && value <= most_pixels_a_side && value == std::floor(value)))
+        fail(file, no_side(key, short_number(value)));
     return static_cast<std::uint32_t>(value);
 }
 
@@ -58,10 +53,10 @@ Intrinsics pinhole(const fs::path& file, const Json& json) {
     Intrinsics intrinsics;
     intrinsics.width = side(file, json, "width");
     intrinsics.height = side(file, json, "height");
-    intrinsics.fx = positive_number(file, json, "fx");
-    intrinsics.fy = positive_number(file, json, "fy");
-    intrinsics.cx = positive_number(file, json, "cx", true);
-    intrinsics.cy = positive_number(file, json, "cy", true);
+    intrinsics.fx = number(file, json, "fx");
+    intrinsics.fy = number(file, json, "fy");
+    intrinsics.cx = number(file, json, "cx");
+    intrinsics.cy = number(file, json, "cy");
     if (const auto fault = pinhole_fault(intrinsics)) fail(file, *fault);
     return intrinsics;
 }
@@ -70,9 +65,7 @@ Intrinsics pinhole(const fs::path& file, const Json& json) {
 
 std::optional<std::string> pinhole_fault(const Intrinsics& k) {
     for (const auto& [key, value] : {std::pair("width", k.width), {"height", k.height}}) {
-        if (value < 1 || value > most_pixels_a_side)
-            return in_quotes(key) + " is " + std::to_string(value) +
-                   ", but must be a whole number from 1 to " + std::to_string(most_pixels_a_side);
+        if (value < 1 || value > most_pixels_a_side) return no_side(key, std::to_string(value));
     }
     for (const auto& [key, value] :
          {std::pair("fx", k.fx), {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}}) {
@@ -83,16 +76,15 @@ std::optional<std::string> pinhole_fault(const Intrinsics& k) {
     }
     if (k.cx > k.width || k.cy > k.height)
         return "the principal point (" + short_number(k.cx) + ", " + short_number(k.cy) +
-               ") lies outside of the image of " + std::to_string(k.width) + " x " +
-               std::to_string(k.height) + " pixels";
+               ") lies outside of the image of " + size_text(k.width, k.height) + " pixels";
     return std::nullopt;
 }
 
 std::optional<std::string> depth_intrinsics_fault(const Intrinsics& k) {
     if (auto fault = pinhole_fault(k)) return fault;
     if (std::uint64_t{k.width} * k.height > most_depth_pixels)
-        return "says " + std::to_string(k.width) + " x " + std::to_string(k.height) +
-               " pixels, more than the " + std::to_string(most_depth_pixels) +
+        return "says " + size_text(k.width, k.height) + " pixels, more than the " +
+               std::to_string(most_depth_pixels) +
                " that a depth image may have; scale the images down";
     // At these ends 16 bits reach 65 km and 6.5 cm: beyond them the unit is wrong.
     if (!(k.depth_scale >= 1 && k.depth_scale <= 1e6))
@@ -110,7 +102,7 @@ Intrinsics read_intrinsics(const FileName& name) {
              "has no \"depth_scale\"; add it: metres = value / depth_scale, so 1000 for "
              "depth in millimetres");
     }
-    intrinsics.depth_scale = positive_number(file, json, "depth_scale");
+    intrinsics.depth_scale = number(file, json, "depth_scale");
     if (const auto fault = depth_intrinsics_fault(intrinsics)) fail(file, *fault);
     return intrinsics;
 }

@@ -4,40 +4,12 @@
 #include <string>
 
 #include "io/text.h"
-#include "points/formats/gltf_checks.h"
 #include "points/formats/import_budget.h"
 #include "points/formats/ply_file.h"
+#include "points/formats/scalar.h"
 
 namespace topple::io {
 namespace {
-
-std::uint32_t word(std::string_view bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        value |= std::uint32_t(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
-    return value;
-}
-
-void check_glb(const std::filesystem::path& file, std::string_view bytes) {
-    if (bytes.size() < 20 || !bytes.starts_with("glTF"))
-        fail(file, "is no GLB: it doesn't start with \"glTF\"");
-    if (word(bytes, 4) != 2) {
-        fail(file, "is GLB version " + std::to_string(word(bytes, 4)) + "; version 2 is read");
-    }
-    const std::uint64_t json_bytes = word(bytes, 12);
-    if (word(bytes, 8) != bytes.size() || json_bytes > bytes.size() - 20) {
-        fail(file, "its header promises " + counted(word(bytes, 8), "byte") +
-                       ", but the file has " + std::to_string(bytes.size()) +
-                       "; it is cut short or damaged");
-    }
-    std::uint64_t binary_bytes = 0;
-    const std::uint64_t next = 20 + json_bytes;
-    if (bytes.size() - next >= 8) {
-        binary_bytes = word(bytes, next);
-        if (binary_bytes > bytes.size() - next - 8) fail(file, "its binary part is cut short");
-    }
-    check_gltf(file, bytes.substr(20, json_bytes), binary_bytes);
-}
 
 // Each becomes a mesh of its own, with a node and a name of a kilobyte.
 void check_stl_solids(const std::filesystem::path& file, std::string_view bytes) {
@@ -55,9 +27,10 @@ void check_stl(const std::filesystem::path& file, std::string_view bytes) {
                       bytes.substr(0, 1024).find('\0') == std::string_view::npos;
     if (text) return check_stl_solids(file, bytes);
     if (bytes.size() < 84) fail(file, "is no STL: it is shorter than the 84 bytes of its header");
-    const std::uint64_t need = 84 + std::uint64_t{50} * word(bytes, 80);
+    const auto triangles = value_at<std::uint32_t>(bytes, 80);
+    const std::uint64_t need = 84 + std::uint64_t{50} * triangles;
     if (need != bytes.size()) {
-        fail(file, "promises " + counted(word(bytes, 80), "triangle") + ", which take " +
+        fail(file, "promises " + counted(triangles, "triangle") + ", which take " +
                        counted(need, "byte") + ", but has " + std::to_string(bytes.size()) +
                        "; it is cut short or no STL");
     }
@@ -78,18 +51,8 @@ bool ply_has_faces(std::string_view bytes) {
 }
 
 void check_mesh(const std::filesystem::path& file, std::string_view bytes, MeshFormat format) {
-    switch (format) {
-        case MeshFormat::glb:
-            return check_glb(file, bytes);
-        case MeshFormat::gltf:
-            return check_gltf(file, bytes, std::nullopt);
-        case MeshFormat::stl:
-            return check_stl(file, bytes);
-        case MeshFormat::ply:
-            return check_ply(file, bytes);
-        case MeshFormat::obj:  // has no counts
-            return;
-    }
+    if (format == MeshFormat::stl) check_stl(file, bytes);
+    if (format == MeshFormat::ply) check_ply(file, bytes);
 }
 
 }  // namespace topple::io

@@ -6,7 +6,7 @@
 namespace topple::io {
 
 // Throws Error(input) where a mesh file's own counts and sizes contradict its length: what the
-// library that reads it takes on trust.
+// library that reads it takes on trust; of glTF see gltf.h, and an OBJ has no counts.
 void check_mesh(const std::filesystem::path& file, std::string_view bytes, MeshFormat format);
 
 // Whether a PLY's header promises faces.

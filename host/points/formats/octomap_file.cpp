@@ -85,12 +85,8 @@ class Walk {
 
 }  // namespace
 
-bool starts_as_octomap(std::string_view bytes) {
-    return bytes.starts_with("# Octomap OcTree");
-}
-
 OctomapFile open_octomap(const std::filesystem::path& file, std::string_view bytes) {
-    if (!starts_as_octomap(bytes)) {
+    if (!bytes.starts_with("# Octomap OcTree")) {
         fail(file, "starts with " + in_quotes(bytes.substr(0, 16)) +
                        ", where an OctoMap starts with \"# Octomap OcTree\"");
     }

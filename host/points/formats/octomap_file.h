@@ -18,8 +18,6 @@ struct OctomapFile {
     std::string_view tree;  // exactly the nodes' bytes
 };
 
-bool starts_as_octomap(std::string_view bytes);
-
 // Reads the header, and walks over the tree as it is stored: the library that reads it takes the
 // tree's depth and length on trust. Throws Error(input).
 OctomapFile open_octomap(const std::filesystem::path& file, std::string_view bytes);

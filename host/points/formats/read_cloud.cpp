@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "io/mapped_file.h"
+#include "io/open_file.h"
 #include "io/text.h"
 #include "points/formats/cloud_builder.h"
 #include "points/formats/formats.h"
@@ -41,7 +41,9 @@ bool starts_as_points(std::string_view bytes) {
     return false;
 }
 
+// None of what begins as a cloud does, PLYs with faces among them.
 std::optional<MeshFormat> mesh_format(std::string_view bytes, const std::string& extension) {
+    if (starts_as_ply(bytes) || bytes.starts_with("# .PCD")) return std::nullopt;
     if (bytes.starts_with("glTF") || extension == ".glb") return MeshFormat::glb;
     if (extension == ".gltf") return MeshFormat::gltf;
     if (extension == ".obj") return MeshFormat::obj;
@@ -155,24 +157,19 @@ bool is_mesh(const std::filesystem::path& file) {
     const MappedFile bytes(file);
     const std::string_view text = bytes.text();
     if (starts_as_ply(text)) return ply_has_faces(text);
-    if (text.starts_with("# .PCD")) return false;
     return mesh_format(text, lower_case(file.extension().string())).has_value();
 }
 
 std::optional<Vec3> up_of_format(const std::filesystem::path& file) {
     const MappedFile bytes(file);
-    const std::string_view text = bytes.text();
-    if (starts_as_ply(text) || text.starts_with("# .PCD")) return std::nullopt;
-    const auto format = mesh_format(text, lower_case(file.extension().string()));
+    const auto format = mesh_format(bytes.text(), lower_case(file.extension().string()));
     if (format != MeshFormat::glb && format != MeshFormat::gltf) return std::nullopt;
     return Vec3{0, 1, 0};
 }
 
 bool can_stream(const std::filesystem::path& file) {
     const auto extension = lower_case(file.extension().string());
-    constexpr std::array<std::string_view, 8> clouds{".ply", ".pcd", ".las", ".xyz",
-                                                     ".txt", ".csv", ".asc", ".pts"};
-    return std::ranges::find(clouds, extension) != clouds.end();
+    return is_text(extension) || extension == ".ply" || extension == ".pcd" || extension == ".las";
 }
 
 PointCloud stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink) {

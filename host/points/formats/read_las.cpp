@@ -121,14 +121,14 @@ PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, 
     CloudBuilder cloud(file, h.points, {.colours = colours}, sink);
     for (std::uint64_t n = 0; n < h.points; ++n) {
         const std::size_t at = h.first + n * h.record;
-        std::array<double, 3> p{};
+        FilePoint point;
         for (std::size_t a = 0; a < 3; ++a)
-            p[a] = value_at<std::int32_t>(bytes, at + 4 * a) * h.scale[a] + h.offset[a] - shift[a];
-        if (value_at<std::uint8_t>(bytes, at + 15) & withheld) p.fill(NAN);
-        std::array<double, 3> rgb{};
+            point.at[a] =
+                value_at<std::int32_t>(bytes, at + 4 * a) * h.scale[a] + h.offset[a] - shift[a];
+        if (value_at<std::uint8_t>(bytes, at + 15) & withheld) point.at.fill(NAN);
         for (std::size_t c = 0; colour > 0 && c < 3; ++c)
-            rgb[c] = value_at<std::uint16_t>(bytes, at + colour + 2 * c);
-        cloud.add(p, {}, rgb);
+            point.colour[c] = value_at<std::uint16_t>(bytes, at + colour + 2 * c);
+        cloud.add(point);
     }
     PointCloud out = cloud.finish();
     out.offset_m = shift;

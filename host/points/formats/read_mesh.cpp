@@ -13,12 +13,11 @@
 #include <cmath>
 #include <vector>
 
-#include "io/mapped_file.h"
+#include "io/open_file.h"
 #include "io/text.h"
 #include "points/formats/cloud_builder.h"
 #include "points/formats/formats.h"
-#include "points/formats/gltf_checks.h"
-#include "points/formats/gltf_plain.h"
+#include "points/formats/gltf.h"
 #include "points/formats/mesh_checks.h"
 #include "points/formats/mesh_colours.h"
 #include "points/formats/mesh_sides.h"
@@ -208,9 +207,9 @@ PointCloud sample(const std::filesystem::path& file, Triangles& triangles,
                 v = 1 - v;
             }
             const auto p = t.corner[0] + side_u * u + side_v * v;
-            cloud.add({p.x, p.y, p.z}, {t.normal.x, t.normal.y, t.normal.z},
-                      colours.any() ? colours.at({t.mesh, t.vertex, {1 - u - v, u, v}})
-                                    : std::array<double, 3>{});
+            FilePoint point{{p.x, p.y, p.z}, {t.normal.x, t.normal.y, t.normal.z}};
+            if (colours.any()) point.colour = colours.at({t.mesh, t.vertex, {1 - u - v, u, v}});
+            cloud.add(point);
         }
     });
     PointCloud out = cloud.finish();
@@ -231,9 +230,9 @@ std::optional<PointCloud> points_of(const std::filesystem::path& file, const aiS
     if (colours.any()) fields.colours = ColourValues::bytes;
     CloudBuilder cloud(file, 0, fields);
     triangles.each_vertex([&](const aiVector3t<double>& p, std::uint32_t mesh, std::uint32_t v) {
-        cloud.add(
-            {p.x, p.y, p.z}, {},
-            colours.any() ? colours.at({mesh, {v, v, v}, {1, 0, 0}}) : std::array<double, 3>{});
+        FilePoint point{{p.x, p.y, p.z}};
+        if (colours.any()) point.colour = colours.at({mesh, {v, v, v}, {1, 0, 0}});
+        cloud.add(point);
     });
     PointCloud out = cloud.finish();
     out.notes = colours.notes();
@@ -287,19 +286,8 @@ class FilesBeside final : public Assimp::DefaultIOSystem {
 };
 
 const char* hint_of(MeshFormat format) {
-    switch (format) {
-        case MeshFormat::obj:
-            return "obj";
-        case MeshFormat::ply:
-            return "ply";
-        case MeshFormat::stl:
-            return "stl";
-        case MeshFormat::glb:
-            return "glb";
-        case MeshFormat::gltf:
-            return "gltf";
-    }
-    return "";
+    constexpr std::array hints{"obj", "ply", "stl", "glb", "gltf"};
+    return hints[static_cast<std::size_t>(format)];
 }
 
 }  // namespace

@@ -88,9 +88,9 @@ class Occupied {
   private:
     void add_voxel(const Voxel& v, const Voxel& low, const Voxel& high) {
         if (!at_surface(v, low, high)) return add_solid(v);
-        std::array<double, 3> centre{};
-        for (std::size_t a = 0; a < 3; ++a) centre[a] = (v[a] + 0.5) * space_.voxel_m;
-        cloud_.add(centre, towards_free(tree_, v));
+        FilePoint point{.normal = towards_free(tree_, v)};
+        for (std::size_t a = 0; a < 3; ++a) point.at[a] = (v[a] + 0.5) * space_.voxel_m;
+        cloud_.add(point);
     }
     bool at_surface(const Voxel& v, const Voxel& low, const Voxel& high) const {
         for (std::size_t a = 0; a < 3; ++a) {

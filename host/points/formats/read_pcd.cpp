@@ -11,6 +11,7 @@
 #include "io/text.h"
 #include "points/formats/cloud_builder.h"
 #include "points/formats/formats.h"
+#include "points/formats/point_values.h"
 #include "points/formats/scalar.h"
 
 namespace topple::io {
@@ -209,50 +210,40 @@ class HeaderParser {
 };
 
 // The fields to read, by place in the header.
-struct PcdWanted {
-    std::array<const Field*, 3> point{}, normal{}, viewpoint{};
+class PcdWanted {
+  public:
+    PcdWanted(const std::filesystem::path& file, const PcdHeader& header)
+        : file_(file), header_(header) {
+        const auto find = [&](const std::string& name) { return find_field(name); };
+        fields = read.take_named(file, find, "FIELDS has no ", {"normal_", "n"});
+        for (const char* name : {"rgb", "rgba"}) {
+            const auto found = find(name);
+            if (!found || colour) continue;
+            const Field& field = header.fields[*found];
+            if (field.size == 4 && field.count == 1) colour = &field;
+        }
+        if (colour) fields.colours = ColourValues::bytes;
+    }
+
+    PointValues read;
     const Field* colour = nullptr;  // four bytes that hold 0xAARRGGBB
-    bool has_normal = false;
-    bool has_viewpoint() const { return viewpoint[0] && viewpoint[1] && viewpoint[2]; }
-    CloudFields fields() const {
-        return {has_normal, has_viewpoint(), colour ? ColourValues::bytes : ColourValues::none};
+    CloudFields fields;
+
+  private:
+    std::optional<std::size_t> find_field(const std::string& name) const {
+        std::optional<std::size_t> found;
+        for (std::size_t i = 0; i < header_.fields.size(); ++i) {
+            if (header_.fields[i].name != name) continue;
+            if (found) fail(file_, "there are two FIELDS " + name);
+            if (header_.fields[i].count == 0) fail(file_, "field " + name + " has COUNT 0");
+            found = i;
+        }
+        return found;
     }
+
+    const std::filesystem::path& file_;
+    const PcdHeader& header_;
 };
-
-const Field* find_field(const std::filesystem::path& file, const PcdHeader& header,
-                        std::string_view name) {
-    const Field* found = nullptr;
-    for (const auto& field : header.fields) {
-        if (field.name != name) continue;
-        if (found) fail(file, "there are two FIELDS " + std::string(name));
-        if (field.count == 0) fail(file, "field " + std::string(name) + " has COUNT 0");
-        found = &field;
-    }
-    return found;
-}
-
-PcdWanted find_wanted(const std::filesystem::path& file, const PcdHeader& header) {
-    static constexpr std::array<const char*, 3> point{"x", "y", "z"};
-    static constexpr std::array<const char*, 3> normal{"normal_x", "normal_y", "normal_z"},
-        short_normal{"nx", "ny", "nz"}, viewpoint{"vp_x", "vp_y", "vp_z"};
-    PcdWanted wanted;
-    wanted.has_normal = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        wanted.point[axis] = find_field(file, header, point[axis]);
-        if (!wanted.point[axis])
-            fail(file, std::string("FIELDS has no ") + point[axis] + "; x, y and z are needed");
-        wanted.normal[axis] = find_field(file, header, normal[axis]);
-        if (!wanted.normal[axis])
-            wanted.normal[axis] = find_field(file, header, short_normal[axis]);
-        wanted.has_normal = wanted.has_normal && wanted.normal[axis];
-        wanted.viewpoint[axis] = find_field(file, header, viewpoint[axis]);
-    }
-    for (const char* name : {"rgb", "rgba"}) {
-        const Field* field = find_field(file, header, name);
-        if (field && field->size == 4 && field->count == 1 && !wanted.colour) wanted.colour = field;
-    }
-    return wanted;
-}
 
 std::array<double, 3> unpacked_colour(std::uint32_t packed) {
     return {static_cast<double>(packed >> 16 & 0xFF), static_cast<double>(packed >> 8 & 0xFF),
@@ -279,20 +270,15 @@ std::uint32_t packed_colour(const Field& field, double value) {
 }
 
 void read_ascii(const std::filesystem::path& file, std::string_view bytes, const PcdHeader& header,
-                const PcdWanted& wanted, CloudBuilder& cloud) {
+                PcdWanted& wanted, CloudBuilder& cloud) {
     Lines lines(bytes, header.data_offset, header.lines);
     const auto bad = [&](const std::string& message) {
         fail(file, "line " + std::to_string(lines.number()) + ": " + message);
     };
     // Where each value goes; null: nowhere.
-    std::array<double, 3> point{}, normal{}, viewpoint{};
     double colour = 0;
     std::vector<double*> place(header.columns, nullptr);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        place[wanted.point[axis]->column] = &point[axis];
-        if (wanted.has_normal) place[wanted.normal[axis]->column] = &normal[axis];
-        if (wanted.has_viewpoint()) place[wanted.viewpoint[axis]->column] = &viewpoint[axis];
-    }
+    for (const auto& [field, to] : wanted.read.values) place[header.fields[field].column] = to;
     if (wanted.colour) place[wanted.colour->column] = &colour;
     std::string_view line;
     while (lines.next(line)) {
@@ -311,10 +297,9 @@ void read_ascii(const std::filesystem::path& file, std::string_view bytes, const
         }
         if (!next_token(rest).empty())
             bad("more than the " + counted(place.size(), "value") + " that each point has");
-        cloud.add(point, normal,
-                  wanted.colour ? unpacked_colour(packed_colour(*wanted.colour, colour))
-                                : std::array<double, 3>{},
-                  viewpoint);
+        if (wanted.colour)
+            wanted.read.point.colour = unpacked_colour(packed_colour(*wanted.colour, colour));
+        cloud.add(wanted.read.point);
     }
     if (cloud.seen() != *header.points) {
         fail(file, "the header promises " + counted(*header.points, "point") + ", the file has " +
@@ -323,29 +308,24 @@ void read_ascii(const std::filesystem::path& file, std::string_view bytes, const
 }
 
 // Points one after another, or, where the data was compressed, field after field.
-void read_binary(std::string_view data, const PcdHeader& header, const PcdWanted& wanted,
-                 bool by_field, CloudBuilder& cloud) {
+void read_binary(std::string_view data, const PcdHeader& header, PcdWanted& wanted, bool by_field,
+                 CloudBuilder& cloud) {
     const bool swapped = must_swap(false);
     const auto points = *header.points;
     const auto bytes_at = [&](const Field& field, std::uint64_t i) {
         return data.data() + (by_field ? field.offset * points + i * field.size * field.count
                                        : i * header.stride + field.offset);
     };
-    const auto load = [&](const std::array<const Field*, 3>& fields, std::uint64_t i) {
-        std::array<double, 3> values;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            values[axis] = load_scalar(fields[axis]->scalar, bytes_at(*fields[axis], i), swapped);
-        return values;
-    };
-    // Its bits: as a float many a colour is no number.
-    const auto load_colour = [&](const Field& field, std::uint64_t i) {
-        return unpacked_colour(load_as<std::uint32_t>(bytes_at(field, i), swapped));
-    };
     for (std::uint64_t i = 0; i < points; ++i) {
-        cloud.add(load(wanted.point, i),
-                  wanted.has_normal ? load(wanted.normal, i) : std::array<double, 3>{},
-                  wanted.colour ? load_colour(*wanted.colour, i) : std::array<double, 3>{},
-                  wanted.has_viewpoint() ? load(wanted.viewpoint, i) : std::array<double, 3>{});
+        for (const auto& [number, to] : wanted.read.values) {
+            const Field& field = header.fields[number];
+            *to = load_scalar(field.scalar, bytes_at(field, i), swapped);
+        }
+        // Its bits: as a float many a colour is no number.
+        if (wanted.colour)
+            wanted.read.point.colour =
+                unpacked_colour(load_as<std::uint32_t>(bytes_at(*wanted.colour, i), swapped));
+        cloud.add(wanted.read.point);
     }
 }
 
@@ -403,7 +383,7 @@ void set_viewpoint(const PcdHeader& header, PointCloud& cloud) {
 PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes,
                      const CloudSink* sink) {
     const auto header = HeaderParser(file, bytes).parse();
-    const auto wanted = find_wanted(file, header);
+    PcdWanted wanted(file, header);
     const auto points = *header.points;
     if (points == 0) fail(file, "has no points (POINTS 0)");
     const auto data = bytes.substr(header.data_offset);
@@ -420,7 +400,7 @@ PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes,
         unpacked = decompress(file, data, needed);
     }
 
-    CloudBuilder cloud(file, points, wanted.fields(), sink);
+    CloudBuilder cloud(file, points, wanted.fields, sink);
     if (header.data == Data::ascii) {
         read_ascii(file, bytes, header, wanted, cloud);
     } else {

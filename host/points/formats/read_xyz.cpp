@@ -127,10 +127,10 @@ class XyzParser {
                 if (count == 6) columns_.normal = {3, 4, 5};
             }
             add_row(count);
-            if (!columns_.by_name && !pose_rows_.full()) look_for_poses(count);
+            if (!columns_.by_name && first_rows_.size() < most_pose_rows) look_for_poses(count);
             if (sink_ && points_.size() == rows_at_once) hand_over();
         }
-        if (!pose_rows_.full()) refuse_poses();
+        if (first_rows_.size() < most_pose_rows) refuse_poses();
         if (promised_ && *promised_ != rows_) {
             fail(file_, "its first line promises " + counted(*promised_, "point") +
                             ", the file has " + std::to_string(rows_) +
@@ -165,14 +165,13 @@ class XyzParser {
     }
 
     void look_for_poses(std::size_t count) {
-        std::array<double, PoseRows::most_columns> values{};
-        for (std::size_t i = 0; i < std::min(count, values.size()); ++i)
-            if (!text_.number(tokens_[i], values[i])) values[i] = NAN;
-        pose_rows_.add(values, count);
-        if (pose_rows_.full()) refuse_poses();
+        std::vector<double>& row = first_rows_.emplace_back(count, NAN);
+        for (std::size_t i = 0; i < count; ++i)
+            if (!text_.number(tokens_[i], row[i])) row[i] = NAN;
+        if (first_rows_.size() == most_pose_rows) refuse_poses();
     }
     void refuse_poses() const {
-        if (pose_rows_.are_poses())
+        if (are_poses(first_rows_))
             fail(file_,
                  "is a file of cameras' poses, not of points: give its folder, with the depth "
                  "images in depth/ and intrinsics.json");
@@ -216,21 +215,23 @@ class XyzParser {
                 fields.colours = columns_.by_name ? ColourValues::real : ColourValues::bytes;
             cloud_.emplace(file_, points_.size(), fields, sink_);
         }
-        const auto of = [](const std::vector<std::array<double, 3>>& values, std::size_t i) {
-            return i < values.size() ? values[i] : std::array<double, 3>{};
-        };
-        for (std::size_t i = 0; i < points_.size(); ++i)
-            cloud_->add(points_[i], of(normals_, i), of(colours_, i));
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            FilePoint point{points_[i]};
+            if (i < normals_.size()) point.normal = normals_[i];
+            if (i < colours_.size()) point.colour = colours_[i];
+            cloud_->add(point);
+        }
         for (auto* rows : {&points_, &normals_, &colours_}) rows->clear();
     }
 
+    static constexpr std::size_t most_pose_rows = 10;
     static constexpr std::size_t rows_at_once = 1u << 16;  // with a sink
 
     const std::filesystem::path& file_;
     const CloudSink* sink_;
     std::optional<CloudBuilder> cloud_;
     std::uint64_t rows_ = 0;
-    PoseRows pose_rows_;
+    std::vector<std::vector<double>> first_rows_;  // that may be poses
     Lines lines_;
     TextColumns text_;
     Columns columns_;

@@ -38,10 +38,8 @@ std::optional<std::string> make_rigid(Mat4& m) {
         return std::string("the last row of a pose's matrix must be 0 0 0 1") +
                (last_column_is_unit(m) ? "; it looks transposed: matrices are row-major" : "");
     if (auto fault = position_fault({m[3], m[7], m[11]})) return fault;
-    Eigen::Matrix3d r;
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) r(row, column) = m[row * 4 + column];
-    }
+    RowMajorPose pose(m.data());
+    const Eigen::Matrix3d r = pose.topLeftCorner<3, 3>();
     const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (error <= rotation_tolerance && r.determinant() < 0)
         return "the matrix is no rotation: it mirrors, its determinant is -1";
@@ -51,12 +49,8 @@ std::optional<std::string> make_rigid(Mat4& m) {
                short_number(r.determinant());
     }
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) m[row * 4 + column] = nearest(row, column);
-    }
-    for (std::size_t i = 12; i < 15; ++i) m[i] = 0;
-    m[15] = 1;
+    pose.topLeftCorner<3, 3>() = svd.matrixU() * svd.matrixV().transpose();
+    pose.row(3) << 0, 0, 0, 1;
     return std::nullopt;
 }
 

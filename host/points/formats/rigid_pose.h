@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,9 @@
 #include "topple/input.h"
 
 namespace topple::io {
+
+// A Mat4 as Eigen's.
+using RowMajorPose = Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>;
 
 // What is wrong with a place, metres, if anything.
 std::optional<std::string> position_fault(const Vec3& at_m);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -13,39 +15,16 @@ namespace topple::io {
 enum class Scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
 
 inline std::size_t bytes_of(Scalar type) {
-    switch (type) {
-        case Scalar::i8:
-        case Scalar::u8:
-            return 1;
-        case Scalar::i16:
-        case Scalar::u16:
-            return 2;
-        case Scalar::i32:
-        case Scalar::u32:
-        case Scalar::f32:
-            return 4;
-        case Scalar::i64:
-        case Scalar::u64:
-        case Scalar::f64:
-            return 8;
-    }
-    return 8;
+    constexpr std::array<std::size_t, 10> bytes{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+    return bytes[static_cast<std::size_t>(type)];
 }
 
 template <class T>
 T load_as(const char* from, bool swapped) {
-    char bytes[sizeof(T)];
-    std::memcpy(bytes, from, sizeof(T));
-    if (swapped) {
-        for (std::size_t i = 0; i < sizeof(T) / 2; ++i) {
-            const char held = bytes[i];
-            bytes[i] = bytes[sizeof(T) - 1 - i];
-            bytes[sizeof(T) - 1 - i] = held;
-        }
-    }
-    T value;
-    std::memcpy(&value, bytes, sizeof(T));
-    return value;
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), from, sizeof(T));
+    if (swapped) std::ranges::reverse(bytes);
+    return std::bit_cast<T>(bytes);
 }
 
 // Whether all of them lie within; `at` may be any number that a file states.

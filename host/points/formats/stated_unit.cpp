@@ -2,6 +2,7 @@
 #include "points/formats/stated_unit.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -42,29 +43,15 @@ std::optional<double> metres_of_epsg(unsigned code) {
 }
 
 std::optional<double> metres_of_name(std::string_view name) {
-    static constexpr std::pair<std::string_view, double> units[] = {{"m", 1},
-                                                                    {"meter", 1},
-                                                                    {"meters", 1},
-                                                                    {"metre", 1},
-                                                                    {"metres", 1},
-                                                                    {"cm", 0.01},
-                                                                    {"centimeter", 0.01},
-                                                                    {"centimeters", 0.01},
-                                                                    {"centimetre", 0.01},
-                                                                    {"centimetres", 0.01},
-                                                                    {"mm", 0.001},
-                                                                    {"millimeter", 0.001},
-                                                                    {"millimeters", 0.001},
-                                                                    {"millimetre", 0.001},
-                                                                    {"millimetres", 0.001},
-                                                                    {"in", 0.0254},
-                                                                    {"inch", 0.0254},
-                                                                    {"inches", 0.0254},
-                                                                    {"ft", 0.3048},
-                                                                    {"foot", 0.3048},
-                                                                    {"feet", 0.3048}};
-    for (const auto& [known, metres] : units)
-        if (known == name) return metres;
+    using Names = std::array<std::string_view, 5>;
+    static constexpr std::pair<Names, double> units[] = {
+        {{"m", "meter", "meters", "metre", "metres"}, 1},
+        {{"cm", "centimeter", "centimeters", "centimetre", "centimetres"}, 0.01},
+        {{"mm", "millimeter", "millimeters", "millimetre", "millimetres"}, 0.001},
+        {{"in", "inch", "inches"}, 0.0254},
+        {{"ft", "foot", "feet"}, 0.3048}};
+    for (const auto& [names, metres] : units)
+        if (!name.empty() && std::ranges::find(names, name) != names.end()) return metres;
     return std::nullopt;
 }
 

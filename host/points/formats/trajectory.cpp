@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <span>
@@ -12,25 +13,14 @@
 namespace topple::io {
 namespace {
 
-// Camera to world from a position and a unit quaternion x y z w, row-major.
-Mat4 pose(const std::array<double, 3>& p, const std::array<double, 4>& q) {
-    const auto [x, y, z, w] = q;
-    return {1 - 2 * (y * y + z * z),
-            2 * (x * y - w * z),
-            2 * (x * z + w * y),
-            p[0],
-            2 * (x * y + w * z),
-            1 - 2 * (x * x + z * z),
-            2 * (y * z - w * x),
-            p[1],
-            2 * (x * z - w * y),
-            2 * (y * z + w * x),
-            1 - 2 * (x * x + y * y),
-            p[2],
-            0,
-            0,
-            0,
-            1};
+// Camera to world from a position and a unit quaternion.
+Mat4 pose(const Eigen::Vector3d& position, const Eigen::Quaterniond& turn) {
+    Mat4 out;
+    RowMajorPose matrix(out.data());
+    matrix.setIdentity();
+    matrix.topLeftCorner<3, 3>() = turn.toRotationMatrix();
+    matrix.topRightCorner<3, 1>() = position;
+    return out;
 }
 
 class TrajectoryParser {
@@ -105,7 +95,7 @@ class TrajectoryParser {
         if (!std::isfinite(norm) || norm < 1e-6) {
             bad("the quaternion has length " + short_number(norm) + " and gives no rotation");
         }
-        return pose({v[1], v[2], v[3]}, {v[4] / norm, v[5] / norm, v[6] / norm, v[7] / norm});
+        return pose({v[1], v[2], v[3]}, {v[7] / norm, v[4] / norm, v[5] / norm, v[6] / norm});
     }
 
     Mat4 kitti(std::string_view line) const {
