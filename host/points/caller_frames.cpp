@@ -16,10 +16,6 @@ namespace {
 
 constexpr double most_stored = std::numeric_limits<std::uint16_t>::max();
 
-std::string size_text(std::uint32_t width, std::uint32_t height) {
-    return std::to_string(width) + " x " + std::to_string(height) + " pixels";
-}
-
 // The rows of an image, one after the other.
 template <class Pixel, class To>
 void copy_rows(const ImageView<Pixel>& from, To* to) {
@@ -103,9 +99,8 @@ void CallerFrames::check(std::size_t i, const FrameView& view) const {
     const Intrinsics& k = from_.intrinsics;
     const auto check_depth = [&](const char* name, const auto& image) {
         if (image.width() != k.width || image.height() != k.height)
-            refuse(i, std::string(name) + " is " + size_text(image.width(), image.height()) +
-                          ", but the intrinsics say " + std::to_string(k.width) + " x " +
-                          std::to_string(k.height));
+            refuse(i, std::string(name) + " is " + io::size_text(image.width(), image.height()) +
+                          " pixels, but the intrinsics say " + io::size_text(k.width, k.height));
         check_rows(i, name, image);
     };
     if (view.depth.empty())
@@ -115,7 +110,7 @@ void CallerFrames::check(std::size_t i, const FrameView& view) const {
     if (view.colour.empty()) return;
     const std::uint32_t width = view.colour.width(), height = view.colour.height();
     if (width == 0 || height == 0 || std::uint64_t{width} * height > io::most_image_pixels)
-        refuse(i, "colour is " + size_text(width, height) + "; expected 1 to " +
+        refuse(i, "colour is " + io::size_text(width, height) + " pixels; expected 1 to " +
                       std::to_string(io::most_image_pixels) + " in all");
     const io::ColourCamera camera{k, from_.colour_intrinsics};
     if (const auto fault = camera.size_fault(width, height, "give colour_intrinsics"))

@@ -19,13 +19,19 @@ namespace {
     throw Error(ErrorKind::input, view.source + ": " + why);
 }
 
+// Columns of which all are there, or none.
 template <class T>
-void check_column(const CloudView& view, const char* name, const Column<T>& column) {
-    if (column.size() != view.size()) {
-        refuse(view, std::string(name) + " has " + std::to_string(column.size()) +
-                         " values, but x has " + std::to_string(view.size()));
+void check_columns(const CloudView& view,
+                   std::initializer_list<std::pair<const char*, const Column<T>*>> columns) {
+    const auto is_empty = [](const auto& named) { return named.second->empty(); };
+    if (std::ranges::all_of(columns, is_empty)) return;
+    for (const auto& [name, column] : columns) {
+        if (column->size() != view.size()) {
+            refuse(view, std::string(name) + " has " + std::to_string(column->size()) +
+                             " values, but x has " + std::to_string(view.size()));
+        }
+        if (!column->data()) refuse(view, std::string(name) + " is a null pointer");
     }
-    if (!column.data() && view.size() > 0) refuse(view, std::string(name) + " is a null pointer");
 }
 
 // That an organised cloud has the pixels that it names.
@@ -35,7 +41,7 @@ void check_image(const CloudView& view) {
         refuse(view, "pixel is given, but width and height are 0; give those of the image");
     }
     const std::uint64_t pixels = std::uint64_t{view.width} * view.height;
-    const std::string image = std::to_string(view.width) + " x " + std::to_string(view.height);
+    const std::string image = io::size_text(view.width, view.height);
     if (view.pixel.empty() && pixels != view.size()) {
         refuse(view, "an organised cloud of " + image + " pixels has as many points, but x has " +
                          std::to_string(view.size()) +
@@ -58,29 +64,19 @@ void check_viewpoint(const CloudView& view) {
 }
 
 void check_arrays(const CloudView& view) {
-    const bool normals = !view.nx.empty() || !view.ny.empty() || !view.nz.empty();
-    const std::array<std::pair<const char*, const FloatColumn*>, 6> columns{{{"x", &view.x},
-                                                                             {"y", &view.y},
-                                                                             {"z", &view.z},
-                                                                             {"nx", &view.nx},
-                                                                             {"ny", &view.ny},
-                                                                             {"nz", &view.nz}}};
-    for (std::size_t c = 0; c < (normals ? 6 : 3); ++c)
-        check_column(view, columns[c].first, *columns[c].second);
-    if (!view.viewpoint_x.empty() || !view.viewpoint_y.empty() || !view.viewpoint_z.empty()) {
-        check_column(view, "viewpoint_x", view.viewpoint_x);
-        check_column(view, "viewpoint_y", view.viewpoint_y);
-        check_column(view, "viewpoint_z", view.viewpoint_z);
-        if (view.height > 1)
-            refuse(view,
-                   "it is organised, of one image, but has a viewpoint for each point; leave "
-                   "out either width and height or viewpoint_x, viewpoint_y and viewpoint_z");
+    check_columns<float>(view, {{"x", &view.x}, {"y", &view.y}, {"z", &view.z}});
+    check_columns<float>(view, {{"nx", &view.nx}, {"ny", &view.ny}, {"nz", &view.nz}});
+    check_columns<float>(view, {{"viewpoint_x", &view.viewpoint_x},
+                                {"viewpoint_y", &view.viewpoint_y},
+                                {"viewpoint_z", &view.viewpoint_z}});
+    if (!view.viewpoint_x.empty() && view.height > 1) {
+        refuse(
+            view,
+            "it is organised, of one image, but has a viewpoint for each point; leave out either "
+            "width and height or viewpoint_x, viewpoint_y and viewpoint_z");
     }
-    if (!view.red.empty() || !view.green.empty() || !view.blue.empty()) {
-        check_column(view, "red", view.red);
-        check_column(view, "green", view.green);
-        check_column(view, "blue", view.blue);
-    }
+    check_columns<std::uint8_t>(view,
+                                {{"red", &view.red}, {"green", &view.green}, {"blue", &view.blue}});
     if (!view.pixel.empty() && view.pixel.size() != view.size()) {
         refuse(view, "pixel has " + std::to_string(view.pixel.size()) + " values, but x has " +
                          std::to_string(view.size()));

@@ -32,24 +32,19 @@ void check(const Intrinsics& k, double cell_m) {
 }
 
 void check(const DepthFrame& frame, const Intrinsics& k, std::size_t number) {
+    const auto refuse = [&](const std::string& why) {
+        throw Error(ErrorKind::input, "depth frame " + std::to_string(number) + ": " + why);
+    };
     if (frame.depth.size() != std::size_t{k.width} * k.height) {
-        throw Error(ErrorKind::input, "depth frame " + std::to_string(number) + ": " +
-                                          std::to_string(frame.depth.size()) +
-                                          " pixels, the intrinsics say " + std::to_string(k.width) +
-                                          " x " + std::to_string(k.height));
+        refuse(std::to_string(frame.depth.size()) + " pixels, the intrinsics say " +
+               std::to_string(k.width) + " x " + std::to_string(k.height));
     }
     if (!frame.rgb.empty() && frame.rgb.size() != 3 * frame.depth.size()) {
-        throw Error(ErrorKind::input, "depth frame " + std::to_string(number) + ": " +
-                                          std::to_string(frame.rgb.size()) +
-                                          " bytes of colour, where each of its " +
-                                          std::to_string(frame.depth.size()) + " pixels takes 3");
+        refuse(std::to_string(frame.rgb.size()) + " bytes of colour, where each of its " +
+               std::to_string(frame.depth.size()) + " pixels takes 3");
     }
-    for (const double v : frame.camera_to_world) {
-        if (!std::isfinite(v)) {
-            throw Error(ErrorKind::input, "depth frame " + std::to_string(number) +
-                                              ": its pose is not finite; leave the frame out");
-        }
-    }
+    if (!std::ranges::all_of(frame.camera_to_world, [](double v) { return std::isfinite(v); }))
+        refuse("its pose is not finite; leave the frame out");
 }
 
 // Hands on the readings of a row, and counts those outside. rgb: of its pixels, or null.

@@ -110,12 +110,6 @@ std::vector<PoseConvention> better_than_given(
 
 }  // namespace
 
-Mat4 pose_meant(const Mat4& given, PoseConvention convention) {
-    Mat4 out;
-    Eigen::Map<Matrix>(out.data()) = meant(isometry(given), convention).matrix();
-    return out;
-}
-
 PoseComparison::PoseComparison(const Intrinsics& k, std::span<const Mat4> poses,
                                double typical_depth_m)
     : field_of_view_(2 * std::atan(std::min(k.width / k.fx, k.height / k.fy) / 2)),

@@ -28,9 +28,6 @@ enum class PoseConvention : std::uint8_t {
 };
 inline constexpr std::size_t pose_conventions = 8;
 
-// The pose that was meant. given: rigid.
-Mat4 pose_meant(const Mat4& given, PoseConvention convention);
-
 // Frames whose poses do not fit those before: the same place is seen by both, and one looks through
 // what the other shows. What moves in the room is a part of what they see, and poses that are off
 // all of it.

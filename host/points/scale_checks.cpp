@@ -49,16 +49,22 @@ std::string other_units(double extent_m, bool from_file, double least_m = least_
     return out;
 }
 
+// The lowest and the highest; of none these are the wrong way round.
+std::pair<double, double> range_of(const FloatColumn& axis) {
+    double low = INFINITY, high = -INFINITY;
+    for (const float value : axis) {
+        low = std::min(low, double{value});
+        high = std::max(high, double{value});
+    }
+    return {low, high};
+}
+
 }  // namespace
 
 double extent_m(const std::array<FloatColumn, 3>& axes) {
     double extent = 0;
     for (const FloatColumn& axis : axes) {
-        double low = INFINITY, high = -INFINITY;
-        for (const float value : axis) {
-            low = std::min(low, double{value});
-            high = std::max(high, double{value});
-        }
+        const auto [low, high] = range_of(axis);
         extent = std::max(extent, high - low);
     }
     return extent;
@@ -82,11 +88,7 @@ void check_viewpoint_distance(const CloudView& cloud) {
     double off = 0, size = 0;
     const std::array<const FloatColumn*, 3> axes{&cloud.x, &cloud.y, &cloud.z};
     for (std::size_t a = 0; a < 3; ++a) {
-        double low = INFINITY, high = -INFINITY;
-        for (const float value : *axes[a]) {
-            low = std::min(low, double{value});
-            high = std::max(high, double{value});
-        }
+        const auto [low, high] = range_of(*axes[a]);
         off = std::max({off, low - cloud.viewpoint[a], cloud.viewpoint[a] - high});
         size = std::max(size, high - low);
     }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/vectors.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -148,23 +150,21 @@ std::optional<Vec3> customary_up(const RangeGrid& grid) {
     double total = 0;
     grid.for_each_seen([&](const Vec3& d) {
         // A cell's solid angle falls with the cube of its distance on the cube.
-        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        const double w = 1 / (length * length * length);
-        for (std::size_t a = 0; a < 3; ++a) sum[a] += w * d[a] / length;
+        const double far = length(d), w = 1 / (far * far * far);
+        for (std::size_t a = 0; a < 3; ++a) sum[a] += w * d[a] / far;
         total += w;
     });
-    const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-    if (!(length > 0)) return {};
+    const double all = length(sum);
+    if (!(all > 0)) return {};
     double within = 0;
     grid.for_each_seen([&](const Vec3& d) {
-        const double far = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        const double along = (d[0] * sum[0] + d[1] * sum[1] + d[2] * sum[2]) / (far * length);
+        const double far = length(d), along = dot(d, sum) / (far * all);
         if (along >= view_cos) within += 1 / (far * far * far);
     });
     if (within < view_share * total) return {};
-    if (sum[2] > axis_cos * length) return Vec3{0, -1, 0};
-    if (sum[2] < -axis_cos * length) return Vec3{0, 1, 0};
-    if (sum[0] > axis_cos * length) return Vec3{0, 0, 1};
+    if (sum[2] > axis_cos * all) return Vec3{0, -1, 0};
+    if (sum[2] < -axis_cos * all) return Vec3{0, 1, 0};
+    if (sum[0] > axis_cos * all) return Vec3{0, 0, 1};
     return {};
 }
 

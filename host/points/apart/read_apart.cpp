@@ -5,7 +5,6 @@
 #include "child/process.h"
 #include "child/program.h"
 #include "io/text.h"
-#include "points/apart/answer_scan.h"
 #include "points/apart/read_scan.h"
 #include "points/apart/scan_message.h"
 #include "points/formats/octomap.h"

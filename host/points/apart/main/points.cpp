@@ -10,8 +10,8 @@
 #include "child/process.h"
 #include "device/listing_message.h"
 #include "io/text.h"
-#include "points/apart/answer_scan.h"
 #include "points/apart/read_scan.h"
+#include "points/apart/scan_message.h"
 #include "topple/version.h"
 
 using namespace topple;

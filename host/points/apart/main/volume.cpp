@@ -9,7 +9,7 @@
 
 #include "child/confine.h"
 #include "child/process.h"
-#include "points/apart/answer_scan.h"
+#include "points/apart/scan_message.h"
 #include "topple/version.h"
 #include "vdb/read_volume.h"
 
