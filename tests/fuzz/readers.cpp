@@ -5,6 +5,7 @@
 
 #include "fuzz/own_files.h"
 #include "io/text.h"
+#include "points/formats/colour_image.h"
 #include "points/formats/frame_sequence.h"
 #include "points/formats/octomap.h"
 #include "points/formats/read_cloud.h"
@@ -100,6 +101,12 @@ constexpr Reader all[] = {
     {"depth", "in.png",
      [](const fs::path& file) {
          expect(io::read_depth_png(file, 9, 7).size() == 63, "an image of another size");
+     }},
+    {"colour", "in.png",
+     [](const fs::path& file) {
+         const auto image = io::decode_colour_image(file, io::read_file(file).text());
+         expect(image.rgb.size() == std::size_t{3} * image.width * image.height,
+                "an image of another size than it says");
      }},
     {"intrinsics", "in.json",
      [](const fs::path& file) { expect(io::read_intrinsics(file).fx > 0, "fx is not positive"); }},

@@ -77,7 +77,7 @@ def empty_png(side, bits, colour, channels):
 def frames(folder, width=48, height=36, count=3, intrinsics=None, depth=None, trajectory=None):
     (folder / 'depth').mkdir(parents=True)
     for n in range(count):
-        (folder / 'depth' / ('%d.png' % n)).write_bytes(depth or png(width, height))
+        (folder / 'depth' / ('%d.png' % n)).write_bytes(depth() if callable(depth) else depth or png(width, height))
     good = {'width': width, 'height': height, 'fx': 40.0, 'fy': 40.0, 'cx': 23.5, 'cy': 17.5, 'depth_scale': 1000}
     text = json.dumps(good) if intrinsics is None else intrinsics
     (folder / 'intrinsics.json').write_text(text)
@@ -156,21 +156,18 @@ def json_places(value, path=()):
             yield from json_places(value[n], path + (n,))
 
 
+REMOVED = object()
+
+
 def json_set(value, path, other):
+    """With another value at that place, or none."""
     if not path:
         return other
     out = dict(value) if isinstance(value, dict) else list(value)
-    out[path[0]] = json_set(value[path[0]], path[1:], other)
-    return out
-
-
-def json_without(value, path):
-    if len(path) == 1:
-        out = dict(value) if isinstance(value, dict) else list(value)
+    if other is REMOVED and len(path) == 1:
         del out[path[0]]
-        return out
-    out = dict(value) if isinstance(value, dict) else list(value)
-    out[path[0]] = json_without(value[path[0]], path[1:])
+    else:
+        out[path[0]] = json_set(value[path[0]], path[1:], other)
     return out
 
 
@@ -178,10 +175,8 @@ def json_variants(value, rng, count):
     places = list(json_places(value))
     for _ in range(count):
         path = rng.choice(places)
-        if path and rng.random() < 0.2:
-            yield json.dumps(json_without(value, path))
-        else:
-            yield json.dumps(json_set(value, path, rng.choice(VALUES)))
+        other = REMOVED if path and rng.random() < 0.2 else rng.choice(VALUES)
+        yield json.dumps(json_set(value, path, other))
     yield '[' * 200000
     yield '{"a":' * 100000
     yield json.dumps(value)[:-1]
@@ -295,7 +290,7 @@ def hostile_files():
 
 def hostile_folders():
     """Pairs of a name and what frames() takes."""
-    yield 'bomb', dict(width=30000, height=30000, count=1, trajectory='', depth=None, bomb=True)
+    yield 'bomb', dict(width=30000, height=30000, count=1, trajectory='', depth=lambda: empty_png(30000, 16, 0, 1))
     yield 'no-depth', dict(count=0)
     yield 'many-poses', dict(trajectory='0 0 0 0 0 0 0 1\n' * 200000)
     yield 'nan-poses', dict(trajectory='0 nan 0 0 0 0 0 1\n' * 3)
@@ -368,50 +363,31 @@ def cases(good, rng, each):
 
 
 def folder_cases(rng, each):
-    intrinsics = {'width': 48, 'height': 36, 'fx': 40.0, 'fy': 40.0, 'cx': 23.5, 'cy': 17.5, 'depth_scale': 1000,
-                  'color_intrinsics': {'width': 48, 'height': 36, 'fx': 40.0, 'fy': 40.0, 'cx': 23.5, 'cy': 17.5}}
-    for text in json_variants(intrinsics, rng, 10 * each):
-        def make(folder, text=text):
-            frames(folder / 'in', intrinsics=text)
-            return ['parse', folder / 'in']
-        yield 'json intrinsics', make
-    for name, arguments in hostile_folders():
-        def make(folder, arguments=arguments):
-            arguments = dict(arguments)
-            if arguments.pop('bomb', False):
-                arguments['depth'] = empty_png(30000, 16, 0, 1)
+    def scan(files=None, **arguments):
+        """A folder of frames, and what else is in it by name."""
+        def make(folder):
             frames(folder / 'in', **arguments)
+            for name, data in (files or {}).items():
+                (folder / 'in' / name).parent.mkdir(exist_ok=True)
+                (folder / 'in' / name).write_bytes(data() if callable(data) else data)
             return ['parse', folder / 'in']
-        yield 'frames ' + name, make
-    for how, data in mutations(png(48, 36), rng, 2 * each):
-        def make(folder, data=data):
-            frames(folder / 'in', depth=data)
-            return ['parse', folder / 'in']
-        yield 'depth ' + how, make
-    colour = png(48, 36, 8, 2, b''.join(b'\0' + bytes((x * 5 % 256, y * 7 % 256, 40)) * 1 for y in range(36) for x in range(0))
-                 or b''.join(b'\0' + b''.join(bytes((x * 5 % 256, y * 7 % 256, 40)) for x in range(48)) for y in range(36)))
-    for how, data in mutations(colour, rng, each):
-        def make(folder, data=data):
-            frames(folder / 'in')
-            (folder / 'in/color').mkdir()
-            for n in range(3):
-                (folder / 'in/color' / ('%d.png' % n)).write_bytes(data)
-            return ['parse', folder / 'in']
-        yield 'colour ' + how, make
+        return make
 
-    def bomb(folder):
-        frames(folder / 'in', count=1, trajectory='')
-        (folder / 'in/color').mkdir()
-        (folder / 'in/color/0.png').write_bytes(empty_png(8000, 8, 2, 3))
-        return ['parse', folder / 'in']
-    yield 'colour bomb', bomb
+    camera = {'width': 48, 'height': 36, 'fx': 40.0, 'fy': 40.0, 'cx': 23.5, 'cy': 17.5}
+    for text in json_variants(dict(camera, depth_scale=1000, color_intrinsics=camera), rng, 10 * each):
+        yield 'json intrinsics', scan(intrinsics=text)
+    for name, arguments in hostile_folders():
+        yield 'frames ' + name, scan(**arguments)
+    for how, data in mutations(png(48, 36), rng, 2 * each):
+        yield 'depth ' + how, scan(depth=data)
+    colour = png(48, 36, 8, 2, b''.join(b'\0' + b''.join(bytes((x * 5 % 256, y * 7 % 256, 40)) for x in range(48))
+                                        for y in range(36)))
+    for how, data in mutations(colour, rng, each):
+        yield 'colour ' + how, scan({'color/%d.png' % n: data for n in range(3)})
+    yield 'colour bomb', scan({'color/0.png': lambda: empty_png(8000, 8, 2, 3)}, count=1, trajectory='')
     for text in seeds.trajectory():
         for how, data in mutations(text, rng, each):
-            def make(folder, data=data):
-                frames(folder / 'in', count=2, trajectory='')
-                (folder / 'in/trajectory.txt').write_bytes(data)
-                return ['parse', folder / 'in']
-            yield 'trajectory ' + how, make
+            yield 'trajectory ' + how, scan({'trajectory.txt': data}, count=2, trajectory='')
 
 
 def result_cases(good, rng, each):

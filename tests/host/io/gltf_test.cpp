@@ -14,17 +14,6 @@ namespace {
 using test::append;
 using test::expect_input_error;
 
-std::string glb_of(std::string json, const std::string& binary) {
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    std::string out = "glTF";
-    for (const std::size_t word : {std::size_t{2}, 28 + json.size() + binary.size(), json.size()})
-        append<std::uint32_t>(out, static_cast<std::uint32_t>(word));
-    out += "JSON" + json;
-    append<std::uint32_t>(out, static_cast<std::uint32_t>(binary.size()));
-    out.append("BIN").push_back('\0');
-    return out + binary;
-}
-
 // A box of one primitive. Corners are at byte 0, what else `binary` holds is at 512 and 1024.
 struct Box {
     std::string node, accessors, views, primitive = R"("attributes":{"POSITION":0},"indices":1)",
@@ -38,7 +27,7 @@ struct Box {
         binary.resize(1024, '\0');
         binary += third;
         binary.resize(1536, '\0');
-        return glb_of(
+        return test::glb_of(
             R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0)" +
                 node + R"(}],"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[)" +
                 accessors + R"(],"bufferViews":[)" + views + "]" + more +

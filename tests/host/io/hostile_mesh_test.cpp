@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "colour_image.h"
 #include "mesh_files.h"
-#include "points/formats/gltf_checks.h"
+#include "points/formats/gltf.h"
 #include "points/formats/mesh_sides.h"
 #include "points/formats/obj_surface.h"
 #include "points/formats/read_cloud.h"
@@ -16,9 +16,9 @@ using test::expect_input_error;
 class HostileMesh : public test::Files {
   protected:
     void refused(const std::string& json, std::initializer_list<std::string_view> message) const {
-        expect_input_error([&] { check_gltf(path("a.gltf"), json, std::nullopt); }, message);
+        expect_input_error([&] { checked_gltf(path("a.gltf"), json, std::nullopt); }, message);
     }
-    void taken(const std::string& json) const { check_gltf(path("a.gltf"), json, std::nullopt); }
+    void taken(const std::string& json) const { checked_gltf(path("a.gltf"), json, std::nullopt); }
 };
 
 std::string repeated(std::size_t count, const std::string& entry) {
@@ -187,11 +187,7 @@ TEST_F(MeshColour, of_vertices_are_mixed_between_them) {
         }
     }
     for (const char* plain : {"box.obj", "box.stl", "box.glb", "box.ply"}) {
-        const std::string name = plain;
-        const auto cloud = read_cloud(write(name, name.ends_with("obj")   ? test::box_obj()
-                                                  : name.ends_with("stl") ? test::box_stl()
-                                                  : name.ends_with("glb") ? test::box_glb()
-                                                                          : test::box_ply()));
+        const auto cloud = read_cloud(write(plain, test::box_file(plain)));
         EXPECT_TRUE(cloud.red.empty()) << plain;
     }
 }
@@ -229,7 +225,6 @@ std::string textured_glb(const std::string& image, const std::string& mime) {
         test::append(buffer, static_cast<std::uint16_t>(index));
     const std::string size = std::to_string(image.size());
     buffer += image;
-    while (buffer.size() % 4 != 0) buffer.push_back('\0');
     std::string json =
         R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2,)"
@@ -243,15 +238,7 @@ std::string textured_glb(const std::string& image, const std::string& mime) {
         R"({"buffer":0,"byteOffset":48,"byteLength":32},{"buffer":0,"byteOffset":80,)"
         R"("byteLength":12},{"buffer":0,"byteOffset":92,"byteLength":)" +
         size + R"(}],"buffers":[{"byteLength":)" + std::to_string(buffer.size()) + "}]}";
-    while (json.size() % 4 != 0) json.push_back(' ');
-    std::string out = "glTF";
-    test::append<std::uint32_t>(out, 2);
-    test::append<std::uint32_t>(out, std::uint32_t(28 + json.size() + buffer.size()));
-    test::append<std::uint32_t>(out, std::uint32_t(json.size()));
-    out.append("JSON").append(json);
-    test::append<std::uint32_t>(out, std::uint32_t(buffer.size()));
-    out.append("BIN").push_back('\0');
-    return out + buffer;
+    return test::glb_of(json, buffer);
 }
 
 TEST_F(MeshColour, of_images_within_the_file) {

@@ -102,18 +102,27 @@ inline std::string box_gltf_json(const std::array<double, 3>& at, const std::str
     return json;
 }
 
-inline std::string box_glb(const std::array<double, 3>& at = {0, 0, 0}) {
-    std::string json = box_gltf_json(at, "");
-    while (json.size() % 4 != 0) json.push_back(' ');
-    const std::string buffer = box_buffer();
+inline std::string glb_of(std::string json, std::string binary) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    binary.resize((binary.size() + 3) / 4 * 4, '\0');
     std::string out = "glTF";
-    append<std::uint32_t>(out, 2);
-    append<std::uint32_t>(out, std::uint32_t(12 + 8 + json.size() + 8 + buffer.size()));
-    append<std::uint32_t>(out, std::uint32_t(json.size()));
-    out.append("JSON").append(json);
-    append<std::uint32_t>(out, std::uint32_t(buffer.size()));
+    for (const std::size_t word : {std::size_t{2}, 28 + json.size() + binary.size(), json.size()})
+        append(out, static_cast<std::uint32_t>(word));
+    out += "JSON" + json;
+    append(out, static_cast<std::uint32_t>(binary.size()));
     out.append("BIN").push_back('\0');
-    return out + buffer;
+    return out + binary;
+}
+
+inline std::string box_glb(const std::array<double, 3>& at = {0, 0, 0}) {
+    return glb_of(box_gltf_json(at, ""), box_buffer());
+}
+
+inline std::string box_file(std::string_view name) {
+    return name.ends_with(".obj")   ? box_obj()
+           : name.ends_with(".stl") ? box_stl()
+           : name.ends_with(".glb") ? box_glb()
+                                    : box_ply();
 }
 
 inline void write_box_gltf(const std::filesystem::path& folder) {

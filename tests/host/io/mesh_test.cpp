@@ -10,15 +10,7 @@ using test::append;
 using test::expect_input_error;
 
 // A box of 2 x 1 x 0.5, as twelve triangles seen from outside, in each of the formats.
-class Mesh : public test::Files {
-  protected:
-    static std::string file_of(const std::string& extension) {
-        if (extension == ".obj") return test::box_obj();
-        if (extension == ".stl") return test::box_stl();
-        if (extension == ".glb") return test::box_glb();
-        return test::box_ply();
-    }
-};
+class Mesh : public test::Files {};
 
 // Which of the box's sides a point lies on, by axis and end.
 int side_of(const PointCloud& cloud, std::size_t n) {
@@ -32,9 +24,9 @@ int side_of(const PointCloud& cloud, std::size_t n) {
 
 TEST_F(Mesh, faces_become_points_with_normals_evenly_by_area) {
     const double area = 2 * (2 * 1 + 2 * 0.5 + 1 * 0.5);
-    for (const char* extension : {".obj", ".stl", ".glb", ".ply"}) {
-        SCOPED_TRACE(extension);
-        const auto cloud = read_cloud(write(std::string("box") + extension, file_of(extension)));
+    for (const char* name : {"box.obj", "box.stl", "box.glb", "box.ply"}) {
+        SCOPED_TRACE(name);
+        const auto cloud = read_cloud(write(name, test::box_file(name)));
         // 7 m2 at 1 cm.
         EXPECT_NEAR(static_cast<double>(cloud.size()), 70000, 2);
         ASSERT_EQ(cloud.nx.size(), cloud.size());

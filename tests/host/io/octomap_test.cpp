@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "points/formats/octomap.h"
 
+#include "clouds.h"
 #include "files.h"
 #include "octomap_files.h"
 
@@ -10,6 +11,39 @@ namespace {
 using test::expect_input_error;
 
 class Octomap : public test::Files {};
+
+using Voxels = std::set<std::array<int, 3>>;
+
+// Of a cloud of their centres.
+Voxels voxels_of(const PointCloud& cloud, double voxel_m) {
+    Voxels out;
+    for (const auto& p : test::points_of(cloud)) {
+        const auto at = [&](std::size_t a) { return int(std::floor(p[a] / voxel_m)); };
+        out.insert({at(0), at(1), at(2)});
+    }
+    return out;
+}
+
+// Of boxes that share none.
+Voxels voxels_of(const std::vector<SpaceMap::Box>& boxes) {
+    Voxels out;
+    std::size_t count = 0;
+    for (const auto& [low, high] : boxes) {
+        for (int i = low[0]; i <= high[0]; ++i) {
+            for (int j = low[1]; j <= high[1]; ++j)
+                for (int k = low[2]; k <= high[2]; ++k, ++count) out.insert({i, j, k});
+        }
+    }
+    EXPECT_EQ(count, out.size());
+    return out;
+}
+
+// By key, from the map's middle on.
+Voxels from_middle(const Voxels& keys) {
+    Voxels out;
+    for (const auto& [i, j, k] : keys) out.insert({i - 32768, j - 32768, k - 32768});
+    return out;
+}
 
 TEST_F(Octomap, leaves_become_points_and_free_space) {
     octomap::OcTree tree = test::room_map();
@@ -22,23 +56,9 @@ TEST_F(Octomap, leaves_become_points_and_free_space) {
         EXPECT_EQ(map.space.voxel_m, 0.05);
         octomap::OcTree again = test::room_map();
         const auto expected = test::voxels_of(again);
-        std::set<std::array<int, 3>> occupied, free;
-        for (std::size_t n = 0; n < map.cloud.size(); ++n) {
-            occupied.insert({int(std::floor(map.cloud.x[n] / 0.05)) + 32768,
-                             int(std::floor(map.cloud.y[n] / 0.05)) + 32768,
-                             int(std::floor(map.cloud.z[n] / 0.05)) + 32768});
-        }
-        for (const auto& box : map.space.free) {
-            for (int i = box.low[0]; i <= box.high[0]; ++i) {
-                for (int j = box.low[1]; j <= box.high[1]; ++j) {
-                    for (int k = box.low[2]; k <= box.high[2]; ++k)
-                        free.insert({i + 32768, j + 32768, k + 32768});
-                }
-            }
-        }
-        EXPECT_EQ(occupied, expected.occupied);
+        EXPECT_EQ(voxels_of(map.cloud, 0.05), from_middle(expected.occupied));
         EXPECT_EQ(map.cloud.size(), expected.occupied.size());
-        EXPECT_EQ(free, expected.free);
+        EXPECT_EQ(voxels_of(map.space.free), from_middle(expected.free));
         // The floor's normals point up, into the room, where it is no corner.
         for (std::size_t n = 0; n < map.cloud.size(); ++n) {
             const bool middle = map.cloud.z[n] < 0 && map.cloud.x[n] > 0 && map.cloud.x[n] < 2 &&
@@ -59,21 +79,7 @@ TEST_F(Octomap, the_inside_of_what_is_occupied_is_no_surface) {
     tree.setNodeValue(octomap::OcTreeKey(32768 - 3, 32768, 32768 + 4),
                       tree.getClampingThresMinLog());
     const ScannedMap map = read_octomap(write("a.bt", test::binary_map(tree)));
-    std::set<std::array<int, 3>> surface, solid;
-    for (std::size_t n = 0; n < map.cloud.size(); ++n) {
-        surface.insert({int(std::floor(map.cloud.x[n] / 0.1)),
-                        int(std::floor(map.cloud.y[n] / 0.1)),
-                        int(std::floor(map.cloud.z[n] / 0.1))});
-    }
-    std::size_t count = 0;
-    for (const auto& box : map.space.solid) {
-        for (int i = box.low[0]; i <= box.high[0]; ++i) {
-            for (int j = box.low[1]; j <= box.high[1]; ++j) {
-                for (int k = box.low[2]; k <= box.high[2]; ++k, ++count) solid.insert({i, j, k});
-            }
-        }
-    }
-    EXPECT_EQ(count, solid.size());
+    const Voxels surface = voxels_of(map.cloud, 0.1), solid = voxels_of(map.space.solid);
     EXPECT_EQ(map.cloud.size(), surface.size());
     constexpr int low[] = {-2, -3, 0};
     for (int n = 0; n < side * side * side; ++n) {

@@ -45,6 +45,19 @@ std::string compressed(const std::string& raw) {
     return out + packed.substr(0, size);
 }
 
+// Points' bytes, which come one after another, field after field, of so many bytes each.
+std::string by_field(const std::string& points, const std::vector<std::size_t>& sizes) {
+    std::string out;
+    const std::size_t stride = std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
+    std::size_t offset = 0;
+    for (const std::size_t size : sizes) {
+        for (std::size_t at = offset; at < points.size(); at += stride)
+            out += points.substr(at, size);
+        offset += size;
+    }
+    return out;
+}
+
 TEST_F(Pcd, ascii_with_normals_vectors_and_padding) {
     const std::string fields = "rgb normal_x normal_y normal_z _ x y histogram z",
                       size = "4 4 4 4 1 4 8 4 4", type = "U F F F U F F F F",
@@ -81,7 +94,7 @@ TEST_F(Pcd, every_type_in_every_encoding) {
     };
     constexpr int n = 40;
     for (const auto& t : types) {
-        std::string by_point, by_field;
+        std::string by_point;
         for (int i = 0; i < n; ++i) {
             append<std::uint8_t>(by_point, 200);
             t.put(by_point, i);
@@ -89,12 +102,7 @@ TEST_F(Pcd, every_type_in_every_encoding) {
             for (int k = 0; k < 3; ++k) append<float>(by_point, -1);
             t.put(by_point, i + 2);
         }
-        by_field = std::string(n, '\xc8');
-        for (int i = 0; i < n; ++i) t.put(by_field, i);
-        for (int i = 0; i < n; ++i) t.put(by_field, i + 1);
-        for (int i = 0; i < 3 * n; ++i) append<float>(by_field, -1);
-        for (int i = 0; i < n; ++i) t.put(by_field, i + 2);
-
+        const std::size_t size = std::stoul(t.size);
         std::map<std::string, std::string> lines{
             {"FIELDS", "label x y tag z"},
             {"SIZE", "1 " + t.size + " " + t.size + " 4 " + t.size},
@@ -103,9 +111,10 @@ TEST_F(Pcd, every_type_in_every_encoding) {
         for (const bool compress : {false, true}) {
             SCOPED_TRACE(t.type + t.size + (compress ? " compressed" : ""));
             lines["DATA"] = compress ? "binary_compressed" : "binary";
-            const auto cloud =
-                read_cloud(write("a.pcd", head_of(std::to_string(n), lines) +
-                                              (compress ? compressed(by_field) : by_point)));
+            const auto cloud = read_cloud(write(
+                "a.pcd", head_of(std::to_string(n), lines) +
+                             (compress ? compressed(by_field(by_point, {1, size, size, 12, size}))
+                                       : by_point)));
             ASSERT_EQ(cloud.size(), std::size_t(n));
             for (int i = 0; i < n; ++i) {
                 EXPECT_EQ(points_of(cloud)[std::size_t(i)],
@@ -241,25 +250,19 @@ TEST_F(Pcd, packed_colours_in_every_encoding) {
                                                      {"SIZE", "4 4 4 4"},
                                                      {"TYPE", std::string("F ") + type + " F F"},
                                                      {"COUNT", "1 1 1 1"}};
-            std::string points, by_field;
+            std::string points;
             for (const std::uint32_t colour : packed) {
                 append(points, 1.0f);
                 append(points, colour);
                 append(points, 2.0f);
                 append(points, 3.0f);
             }
-            for (int field = 0; field < 4; ++field) {
-                for (const std::uint32_t colour : packed) {
-                    if (field == 1)
-                        append(by_field, colour);
-                    else
-                        append(by_field, static_cast<float>(field));
-                }
-            }
             for (const bool compress : {false, true}) {
                 lines["DATA"] = compress ? "binary_compressed" : "binary";
                 EXPECT_EQ(colours_of(read_cloud(write(
-                              "a.pcd", head(lines) + (compress ? compressed(by_field) : points)))),
+                              "a.pcd",
+                              head(lines) + (compress ? compressed(by_field(points, {4, 4, 4, 4}))
+                                                      : points)))),
                           (Colours{{1, 2, 3}, {4, 5, 6}}));
             }
         }
