@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <mutex>
 #include <system_error>
 #include <utility>
 
+#include "core/number_text.h"
 #include "core/process_memory.h"
 #include "io/open_file.h"
 #include "io/text.h"
@@ -195,14 +195,9 @@ std::string memory_bound_text(const ParseOptions& options) {
 }
 
 std::string duration_text(double seconds) {
-    char text[32];
-    if (seconds < 9.5)
-        std::snprintf(text, sizeof(text), "%.2g s", seconds);
-    else if (seconds < 90)
-        std::snprintf(text, sizeof(text), "%.0f s", std::ceil(seconds));
-    else
-        std::snprintf(text, sizeof(text), "%.0f min", std::ceil(seconds / 60));
-    return text;
+    if (seconds < 9.5) return to_digits(seconds, 2) + " s";
+    if (seconds < 90) return to_places(std::ceil(seconds), 0) + " s";
+    return to_places(std::ceil(seconds / 60), 0) + " min";
 }
 
 }  // namespace topple

@@ -40,8 +40,6 @@ class ColourFrames {
     static ColourFrames open(const std::filesystem::path& folder,
                              const std::vector<FileName>& depth_images, const Intrinsics& depth);
 
-    bool empty() const { return images_.empty(); }  // no frame has one
-
     // What the pixels of depth image `index` look like; empty where it has no image. May be called
     // from several threads at once. Throws Error(input) naming the image where it is damaged, or of
     // another size than its intrinsics or other proportions than the depth images.

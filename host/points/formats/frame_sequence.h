@@ -28,8 +28,6 @@ class FrameSequence final : public FrameStream {
     const Intrinsics& intrinsics() const override { return intrinsics_; }
     std::size_t size() const override { return images_.size(); }
     bool posed() const { return posed_; }  // there is a file of poses
-    const std::filesystem::path& image(std::size_t index) const { return images_.at(index).path(); }
-    const Mat4& camera_to_world(std::size_t index) const { return poses_.at(index); }
     const std::vector<Mat4>& poses() const { return poses_; }
 
     // Reads image `index` < size(). May be called from several threads at once. Throws Error(input)

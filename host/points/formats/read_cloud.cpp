@@ -12,7 +12,6 @@
 #include "io/text.h"
 #include "points/formats/cloud_builder.h"
 #include "points/formats/formats.h"
-#include "points/formats/mesh_checks.h"
 #include "points/formats/stated_unit.h"
 
 namespace topple::io {
@@ -49,6 +48,19 @@ std::optional<MeshFormat> mesh_format(std::string_view bytes, const std::string&
     if (extension == ".obj") return MeshFormat::obj;
     if (extension == ".stl") return MeshFormat::stl;
     return std::nullopt;
+}
+
+// Whether a PLY's header promises faces.
+bool ply_has_faces(std::string_view bytes) {
+    Lines lines(bytes);
+    for (std::string_view line; lines.next(line) && lines.number() < 20000;) {
+        const auto keyword = next_token(line);
+        if (keyword == "end_header") return false;
+        if (keyword != "element" || next_token(line) != "face") continue;
+        std::uint64_t count = 0;
+        return parse_count(next_token(line), count) && count > 0;
+    }
+    return false;
 }
 
 // The faces of a PLY, where it has any that show a surface, else its vertices.

@@ -112,7 +112,6 @@ class ColourFolder : public test::Files {
 
 TEST_F(ColourFolder, of_the_same_size_and_of_others) {
     make();
-    EXPECT_TRUE(FrameSequence::open(folder_).colours().empty());
     EXPECT_TRUE(colours().empty());
     const Bytes expected = rgb_pixels(8, 6, place);
     write("color/0000.png", image(8, 6, place));
@@ -195,7 +194,7 @@ TEST_F(ColourFolder, what_does_not_fit_is_refused_or_noted) {
 
     std::filesystem::rename(path("color/0000.jpg"), path("color/other.jpg"));
     const FrameSequence sequence = FrameSequence::open(folder_);
-    EXPECT_TRUE(sequence.colours().empty());
+    EXPECT_TRUE(sequence.colours().load(0).empty());
     ASSERT_EQ(sequence.colours().notes().size(), 1u);
     EXPECT_THAT(sequence.colours().notes()[0], testing::HasSubstr("0000.jpg"));
 }

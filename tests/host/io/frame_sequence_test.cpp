@@ -100,8 +100,8 @@ TEST_F(Sequence, formats_of_poses_are_told_apart_by_content_whatever_the_name) {
             EXPECT_TRUE(sequence.posed());
             ASSERT_EQ(sequence.size(), 2u);
             for (std::size_t i = 0; i < 16; ++i) {
-                EXPECT_NEAR(sequence.camera_to_world(0)[i], level_pose[i], 1e-12) << i;
-                EXPECT_NEAR(sequence.camera_to_world(1)[i], turned_pose[i], 1e-12) << i;
+                EXPECT_NEAR(sequence.poses()[0][i], level_pose[i], 1e-12) << i;
+                EXPECT_NEAR(sequence.poses()[1][i], turned_pose[i], 1e-12) << i;
             }
             std::filesystem::remove(file);
         }
