@@ -20,6 +20,7 @@ import argparse
 import json
 import math
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -107,12 +108,6 @@ def ranks(values):
     return out
 
 
-def correlation(a, b):
-    mean_a, mean_b = sum(a) / len(a), sum(b) / len(b)
-    top = sum((x - mean_a) * (y - mean_b) for x, y in zip(a, b))
-    return top / math.sqrt(sum((x - mean_a) ** 2 for x in a) * sum((y - mean_b) ** 2 for y in b))
-
-
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument('topple')
@@ -147,7 +142,7 @@ def main():
             if not 0.35 <= f['pgv_dispersion'] <= 0.65:
                 fails.append(name + ': dispersion')
         if len(medians) > 2:
-            rank = correlation(ranks(medians), ranks(wanted))
+            rank = statistics.correlation(ranks(medians), ranks(wanted))
             print('rank correlation %.3f' % rank)
             if rank < 0.95:
                 fails.append('rank correlation')

@@ -3,9 +3,11 @@
 
 #include <chrono>
 
+#include "core/vectors.h"
 #include "host/io/files.h"
 #include "lab/rooms/furnished_room.h"
 #include "lab/scan/depth_camera.h"
+#include "lab/solids/rigid.h"
 #include "simulation/pushes.h"
 #include "topple/device.h"
 #include "topple/parse.h"
@@ -27,12 +29,16 @@ std::vector<Cell> box(const Cell& low, const Cell& high) {
 }
 const std::vector<Cell> table = box({-20, -20, -3}, {20, 20, 0});
 
+// How far it goes in two seconds.
+double moved(Simulation simulation, double far_m) {
+    simulation.run(2, far_m);
+    return length(simulation.moved_m());
+}
+
 double moved(const LooseBody& body, const std::vector<Cell>& fixed, const Vec3& impulse_Ns = {}) {
     Simulation simulation(body, fixed, 0.3);
     simulation.push(impulse_Ns);
-    simulation.run(2, 0.5);
-    const Vec3 by = simulation.moved_m();
-    return std::sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    return moved(std::move(simulation), 0.5);
 }
 
 TEST(Simulation, ABoxStandsAsLongAsItsCentreIsOverTheTable) {
@@ -131,13 +137,7 @@ TEST(Pushes, LeastEnergiesAndTheirDirectionsAreThoseOfTheSimulator) {
     EXPECT_GE(towards, 21);
 }
 
-}  // namespace
-}  // namespace topple::simulation
-
 // Whether what a parse says to stand stays where it was found, in a simulator.
-namespace topple::test {
-namespace {
-
 Scene parsed_room(const std::filesystem::path& folder, std::uint64_t seed, bool varied) {
     scenes::RoomOptions room;
     room.seed = seed;
@@ -153,43 +153,32 @@ Scene parsed_room(const std::filesystem::path& folder, std::uint64_t seed, bool 
     return parse(folder, options).scene;
 }
 
-// The solid voxels of a scene, by primitive, in the frame in which z is up.
-struct Solids {
-    std::map<std::int32_t, std::vector<simulation::Cell>> of_primitive;  // -1: of none
-};
+// The solid voxels of a scene, by primitive (-1: of none), in the frame in which z is up.
+using Solids = std::map<std::int32_t, std::vector<Cell>>;
+
 Solids solids_of(const Scene& scene) {
     Solids solids;
-    const Mat4& m = scene.manhattan_from_input;
     for (std::size_t n = 0; n < scene.solid.x.size(); ++n) {
-        const Vec3 p{scene.solid.x[n], scene.solid.y[n], scene.solid.z[n]};
-        simulation::Cell cell{};
-        for (std::size_t r = 0; r < 3; ++r) {
-            const double x =
-                m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
-            cell[r] = static_cast<std::int32_t>(std::floor(x / scene.voxel_size_m));
-        }
-        solids.of_primitive[scene.solid.primitive[n]].push_back(cell);
+        const Vec3 p = scenes::moved(scene.manhattan_from_input,
+                                     {scene.solid.x[n], scene.solid.y[n], scene.solid.z[n]});
+        Cell cell{};
+        for (std::size_t r = 0; r < 3; ++r)
+            cell[r] = static_cast<std::int32_t>(std::floor(p[r] / scene.voxel_size_m));
+        solids[scene.solid.primitive[n]].push_back(cell);
     }
     return solids;
 }
 
-double moved(simulation::Simulation simulation, double far_m) {
-    simulation.run(2, far_m);
-    const Vec3 by = simulation.moved_m();
-    return std::sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
-}
-
 // The object as found, all others fixed; or without what of these lies below its middle.
-simulation::Simulation let_go(const Scene& scene, const Solids& solids, const Object& object,
-                              bool supported) {
-    simulation::LooseBody body{scene.voxel_size_m, scene.density_kg_m3, {}};
-    simulation::Cell low{}, high{};
+Simulation let_go(const Scene& scene, const Solids& solids, const Object& object, bool supported) {
+    LooseBody body{scene.voxel_size_m, scene.density_kg_m3, {}};
+    Cell low{}, high{};
     bool any = false;
-    std::vector<simulation::Cell> fixed;
-    for (const auto& [primitive, cells] : solids.of_primitive) {
+    std::vector<Cell> fixed;
+    for (const auto& [primitive, cells] : solids) {
         if (primitive < 0 || scene.primitives[primitive].object != object.id) continue;
         body.parts.push_back(cells);
-        for (const simulation::Cell& c : cells) {
+        for (const Cell& c : cells) {
             for (std::size_t a = 0; a < 3; ++a) {
                 low[a] = any ? std::min(low[a], c[a]) : c[a];
                 high[a] = any ? std::max(high[a], c[a]) : c[a];
@@ -199,22 +188,22 @@ simulation::Simulation let_go(const Scene& scene, const Solids& solids, const Ob
     }
     // Far enough around for whatever stays.
     const auto reach = static_cast<std::int32_t>(std::ceil(0.1 / scene.voxel_size_m));
-    for (const auto& [primitive, cells] : solids.of_primitive) {
+    for (const auto& [primitive, cells] : solids) {
         if (primitive >= 0 && scene.primitives[primitive].object == object.id) continue;
-        for (const simulation::Cell& c : cells) {
+        for (const Cell& c : cells) {
             bool near = true;
             for (std::size_t a = 0; a < 3; ++a)
                 near = near && c[a] >= low[a] - reach && c[a] <= high[a] + reach;
             if (near) fixed.push_back(c);
         }
     }
-    body = simulation::without_rough_underside(std::move(body), fixed);
+    body = without_rough_underside(std::move(body), fixed);
     if (!supported)
         std::erase_if(fixed, [&](const auto& c) { return 2 * c[2] < low[2] + high[2]; });
     return {body, fixed, scene.friction};
 }
 
-class SlowRooms : public Files, public ::testing::WithParamInterface<bool> {};
+class SlowRooms : public test::Files, public ::testing::WithParamInterface<bool> {};
 
 TEST_P(SlowRooms, what_has_a_barrier_stays_and_falls_without_support) {
     int stable = 0, stay = 0, fall = 0, free = 0, free_fall = 0;
@@ -254,4 +243,4 @@ INSTANTIATE_TEST_SUITE_P(Furniture, SlowRooms, ::testing::Values(false, true),
                          [](const auto& varied) { return varied.param ? "varied" : "plain"; });
 
 }  // namespace
-}  // namespace topple::test
+}  // namespace topple::simulation
