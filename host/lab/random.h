@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/random.h"
+
 // The scenes' own random numbers: the same seed gives the same scene with every compiler and
 // library, which std:: distributions do not promise.
 namespace topple::scenes {
@@ -15,41 +17,36 @@ constexpr std::uint64_t scatter(std::uint64_t v) {
     return v ^ (v >> 31);
 }
 
-// splitmix64. Two streams from different seeds, or different `stream` numbers, are unrelated.
-class Random {
+// Two streams from different seeds, or different `stream` numbers, are unrelated.
+class Random : public topple::Random {
   public:
-    explicit constexpr Random(std::uint64_t seed, std::uint64_t stream = 0)
-        : state_(scatter(scatter(seed + 0x9e3779b97f4a7c15ULL) ^
-                         (stream * 0xd1342543de82ef95ULL + 1))) {}
+    explicit Random(std::uint64_t seed, std::uint64_t stream = 0)
+        : topple::Random(scatter(scatter(seed + 0x9e3779b97f4a7c15ULL) ^
+                                 (stream * 0xd1342543de82ef95ULL + 1))) {}
 
-    constexpr std::uint64_t next() { return scatter(state_ += 0x9e3779b97f4a7c15ULL); }
-    // In [0, 1).
-    constexpr double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
     // In [low, high).
-    constexpr double operator()(double low, double high) { return low + (high - low) * uniform(); }
+    double operator()(double low, double high) { return uniform(low, high); }
     // In [low, high], both included; the bias of the scaling is below 2^-32.
-    constexpr int integer(int low, int high) {
+    int integer(int low, int high) {
         const auto span = static_cast<std::uint64_t>(high - low) + 1;
-        return low + static_cast<int>(((next() >> 32) * span) >> 32);
+        return low + static_cast<int>(((bits() >> 32) * span) >> 32);
     }
     // Of one of so many, each as likely.
-    constexpr std::size_t index(std::size_t count) {
+    std::size_t index(std::size_t count) {
         return static_cast<std::size_t>(integer(0, static_cast<int>(count) - 1));
     }
-    constexpr bool chance(double probability) { return uniform() < probability; }
+    bool chance(double probability) { return uniform() < probability; }
     // Approximately standard normal: twelve 10-bit uniforms summed, so that no library's log or cos
     // enters. Variance 1 to 1e-6; never beyond 6.
-    constexpr double normal() {
+    double normal() {
         std::uint32_t sum = 0;
         for (int word = 0; word < 2; ++word) {
-            const std::uint64_t bits = next();
-            for (int k = 0; k < 6; ++k) sum += static_cast<std::uint32_t>(bits >> (10 * k)) & 1023u;
+            const std::uint64_t drawn = bits();
+            for (int k = 0; k < 6; ++k)
+                sum += static_cast<std::uint32_t>(drawn >> (10 * k)) & 1023u;
         }
         return (static_cast<double>(sum) - 12 * 511.5) / 1024.0;
     }
-
-  private:
-    std::uint64_t state_;
 };
 
 }  // namespace topple::scenes

@@ -18,6 +18,7 @@
 #include "lab/evaluation/room.h"
 #include "lab/evaluation/tables.h"
 #include "lab/rooms/kinds.h"
+#include "lab/scan/files.h"
 #include "topple/device.h"
 #include "topple/error.h"
 
@@ -48,12 +49,6 @@ void check(const EvaluateArguments& a) {
         throw Error(ErrorKind::usage,
                     "--single: --groupings, --fit-joints and --bases take rooms of several frames");
     }
-}
-
-void make_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw Error(ErrorKind::input, folder.string() + ": " + error.message());
 }
 
 void keep(const EvaluateArguments& a, const char* name, const std::string& text) {
@@ -119,7 +114,7 @@ void judge_kinds(EvaluateArguments& a) {
         for (unsigned n = 0; n < a.seeds; ++n) {
             a.scan.seed = a.first + n;
             print_to(stderr, "%s %u of %u\n", kind.c_str(), n + 1, a.seeds);
-            scores.push_back(evaluation::scan_and_judge({kind, a.scan, a.options.parse}));
+            scores.push_back(evaluation::scan_and_judge(kind, a.scan, a.options.parse));
         }
     }
     tell(a, "kinds.txt", evaluation::kinds_table(scores));
@@ -148,7 +143,7 @@ void judge_measures(EvaluateArguments& a) {
 
 int run(EvaluateArguments& a) {
     check(a);
-    if (!a.fit_joints) make_folder(a.out);
+    if (!a.fit_joints) scenes::make_folder(a.out);
     catch_interrupts();
     a.options.parse.device = device::open_device(a.backend);
     a.options.parse.cancelled = [] { return interrupted() != 0; };

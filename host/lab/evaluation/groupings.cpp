@@ -88,19 +88,6 @@ double energy_of_all(const EnergyOf& energy_of, const std::vector<std::int32_t>&
 
 using scenes::RelationScore;
 
-double mean(const std::vector<Groupings>& rooms, RelationScore Groupings::*which,
-            scenes::Share RelationScore::*measure) {
-    double sum = 0;
-    int count = 0;
-    for (const Groupings& room : rooms) {
-        const double value = (room.*which.*measure).value;
-        if (std::isnan(value)) continue;
-        sum += value;
-        ++count;
-    }
-    return sum / count;
-}
-
 constexpr RelationScore Groupings::*ways[]{&Groupings::discriminative, &Groupings::greedy,
                                            &Groupings::sampled};
 
@@ -185,20 +172,21 @@ std::string table_of(const std::vector<Groupings>& rooms) {
                 {"fixed joints, precision", &RelationScore::fixed_precision},
                 {"supports, recall", &RelationScore::support_recall},
                 {"supports, precision", &RelationScore::support_precision}};
-    for (const auto& [name, measure] : rows) {
-        append(text, "  %-26s  %14s  %8s  %8s\n", name,
-               percent(mean(rooms, ways[0], measure)).c_str(),
-               percent(mean(rooms, ways[1], measure)).c_str(),
-               percent(mean(rooms, ways[2], measure)).c_str());
-    }
-    using Paper = PaperFigures;
-    const auto paper = [&](const char* name, double discriminative, double greedy, double swc) {
+    const auto add_row = [&](const char* name, double discriminative, double greedy, double swc) {
         append(text, "  %-26s  %14s  %8s  %8s\n", name, percent(discriminative).c_str(),
                percent(greedy).c_str(), percent(swc).c_str());
     };
-    paper("paper: fixed joints", Paper::discriminative_fixed_joints, Paper::greedy_fixed_joints,
-          Paper::fixed_joints);
-    paper("paper: supports", Paper::discriminative_support, Paper::greedy_support, Paper::support);
+    for (const auto& [name, measure] : rows) {
+        const auto mean_of = [&](RelationScore Groupings::*way) {
+            return mean(known(rooms, [&](const Groupings& r) { return (r.*way.*measure).value; }));
+        };
+        add_row(name, mean_of(ways[0]), mean_of(ways[1]), mean_of(ways[2]));
+    }
+    using Paper = PaperFigures;
+    add_row("paper: fixed joints", Paper::discriminative_fixed_joints, Paper::greedy_fixed_joints,
+            Paper::fixed_joints);
+    add_row("paper: supports", Paper::discriminative_support, Paper::greedy_support,
+            Paper::support);
     text.append(
         "\nEach room: fixed joints, recall / precision, then supports; energy of the partition\n"
         "  seed  discriminative                greedy                        SWC                   "

@@ -2,8 +2,8 @@
 #include "lab/evaluation/kind_score.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "lab/rooms/kinds.h"
@@ -184,23 +184,19 @@ class Judge {
         for (std::size_t n = 1; n < below_.size(); ++n) {
             for (const Id s : below_[n]) real.insert({true_body(s), true_body(static_cast<Id>(n))});
         }
-        std::map<Id, Id> owner = objects_.owners();
+        const std::map<Id, Id> owner = objects_.owners();
         std::size_t right = 0, told = 0;
-        const auto body = [&](Id f, Id& is) {
-            if (f == -2) {
-                is = 0;
-                return true;
-            }
+        const auto body = [&](Id f) -> std::optional<Id> {
+            if (f == -2) return 0;
             const auto own = owner.find(f);
-            if (own == owner.end()) return false;
-            is = true_body(own->second);
-            return true;
+            if (own == owner.end()) return std::nullopt;
+            return true_body(own->second);
         };
         for (const auto& [a, b] : found) {
-            Id low = 0, up = 0;
-            if (!body(a, low) || !body(b, up)) continue;
+            const auto low = body(a), up = body(b);
+            if (!low || !up) continue;
             ++told;
-            right += real.contains({low, up});
+            right += real.contains({*low, *up});
         }
         out.support_recall = ratio(hits, of);
         out.support_precision = ratio(right, told);
@@ -221,16 +217,16 @@ KindScore judge_kind(const scenes::World& world, const scenes::Scan& scan, const
     return Judge(world, scan, scene).score();
 }
 
-KindScore scan_and_judge(const KindOptions& options) {
-    const scenes::World world = scenes::make_world(options.kind, options.scan.seed);
-    const scenes::Scan scan = scenes::scan(world, options.scan);
+KindScore scan_and_judge(const std::string& kind, const scenes::ScanOptions& scan_options,
+                         const ParseOptions& parse_options) {
+    const scenes::World world = scenes::make_world(kind, scan_options.seed);
+    const scenes::Scan scan = scenes::scan(world, scan_options);
     const scenes::TemporaryFolder folder("topple_kind");
-    scenes::write_scan(folder.path(), world, scan, options.scan, options.kind);
+    scenes::write_scan(folder.path(), world, scan, scan_options, kind);
     const auto input = scan.frames.empty() ? folder.path() / "cloud.ply" : folder.path();
-    const ParseResult result = parse(input, options.parse);
-    KindScore out = judge_kind(world, scan, result.scene);
-    out.kind = options.kind;
-    out.seed = options.scan.seed;
+    KindScore out = judge_kind(world, scan, parse(input, parse_options).scene);
+    out.kind = kind;
+    out.seed = scan_options.seed;
     return out;
 }
 

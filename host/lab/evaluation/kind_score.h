@@ -35,13 +35,9 @@ struct KindScore {
 };
 KindScore judge_kind(const scenes::World& world, const scenes::Scan& scan, const Scene& scene);
 
-struct KindOptions {
-    std::string kind;
-    scenes::ScanOptions scan;
-    ParseOptions parse;
-};
 // Makes the room and the scan of a seed, parses and judges it. Throws what these throw.
-KindScore scan_and_judge(const KindOptions& options);
+KindScore scan_and_judge(const std::string& kind, const scenes::ScanOptions& scan_options,
+                         const ParseOptions& parse_options);
 
 // A row of means for each kind, and of all.
 std::string kinds_table(const std::vector<KindScore>& scores);

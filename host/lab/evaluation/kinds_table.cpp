@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <cmath>
 
 #include "lab/evaluation/kind_score.h"
 #include "lab/evaluation/text.h"
@@ -24,24 +23,13 @@ constexpr std::array columns{
     Column{"swallowed", &KindScore::swallowed},
 };
 
-// Means over the rooms of a kind, or of all for an empty name; rooms without a case left out.
-void add_row(const std::vector<KindScore>& scores, const std::string& kind, std::string& text) {
-    std::size_t rooms = 0, objects = 0;
-    for (const KindScore& s : scores) {
-        if (!kind.empty() && s.kind != kind) continue;
-        ++rooms;
-        objects += s.objects;
-    }
-    append(text, "  %-12s %5zu %7zu", kind.empty() ? "all" : kind.c_str(), rooms, objects);
-    for (const Column& column : columns) {
-        double sum = 0, count = 0;
-        for (const KindScore& s : scores) {
-            if ((!kind.empty() && s.kind != kind) || std::isnan(s.*column.value)) continue;
-            sum += s.*column.value;
-            count += 1;
-        }
-        append(text, " %9s", percent(count > 0 ? sum / count : KindScore::none).c_str());
-    }
+// Means over rooms; those without a case left out.
+void add_row(const std::vector<KindScore>& rooms, const char* name, std::string& text) {
+    std::size_t objects = 0;
+    for (const KindScore& s : rooms) objects += s.objects;
+    append(text, "  %-12s %5zu %7zu", name, rooms.size(), objects);
+    for (const Column& column : columns)
+        append(text, " %9s", percent(mean(known(rooms, column.value))).c_str());
     text.append("\n");
 }
 
@@ -59,8 +47,9 @@ std::string kinds_table(const std::vector<KindScore>& scores) {
     for (const KindScore& s : scores) {
         if (kinds.empty() || kinds.back() != s.kind) kinds.push_back(s.kind);
     }
-    for (const std::string& kind : kinds) add_row(scores, kind, text);
-    if (kinds.size() > 1) add_row(scores, "", text);
+    for (const std::string& kind : kinds)
+        add_row(scores_of(scores, &KindScore::kind, kind), kind.c_str(), text);
+    if (kinds.size() > 1) add_row(scores, "all", text);
     return text;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/ranked.h"
 #include "core/vectors.h"
 #include "lab/evaluation/text.h"
 #include "lab/scan/depth_camera.h"
@@ -59,27 +60,6 @@ ParseResult scan_and_parse(const scenes::World& world, const MeasureOptions& opt
     return parse(folder.path(), options.parse);
 }
 
-double median(std::vector<double> values) {
-    if (values.empty()) return MeasureScore::none;
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
-
-double mean(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double v : values) sum += v;
-    return values.empty() ? MeasureScore::none : sum / static_cast<double>(values.size());
-}
-
-template <class Keep>
-std::vector<double> known(const std::vector<MeasureScore>& scores, double MeasureScore::*value,
-                          const Keep& keep) {
-    std::vector<double> out;
-    for (const MeasureScore& s : scores)
-        if (keep(s) && std::isfinite(s.*value)) out.push_back(s.*value);
-    return out;
-}
-
 double share_within(const std::vector<double>& values, double middle, double most) {
     const auto in =
         std::ranges::count_if(values, [&](double v) { return std::abs(v - middle) <= most; });
@@ -91,8 +71,8 @@ void add_spread(const std::vector<double>& ratios, const char* name, std::string
     std::vector<double> off;
     for (const double r : ratios) off.push_back(std::abs(r - 1));
     append(text, "  %-8s median off by %s, mean bias %+.1f %%, within 6 %%: %s, 15 %%: %s\n", name,
-           percent(median(off)).c_str(), 100 * (mean(ratios) - 1),
-           percent(share_within(ratios, 1, 0.06)).c_str(),
+           percent(off.empty() ? MeasureScore::none : upper_median(off)).c_str(),
+           100 * (mean(ratios) - 1), percent(share_within(ratios, 1, 0.06)).c_str(),
            percent(share_within(ratios, 1, 0.15)).c_str());
 }
 
@@ -158,23 +138,21 @@ std::string measures_table(const std::vector<MeasureScore>& scores) {
     for (const MeasureScore& s : scores)
         if (std::ranges::find(names, s.name) == names.end()) names.push_back(s.name);
     for (const std::string& name : names) {
-        const auto mine = [&](const MeasureScore& s) { return s.name == name; };
-        const auto mass = known(scores, &MeasureScore::mass, mine);
+        const auto mine = scores_of(scores, &MeasureScore::name, name);
+        const auto mass = known(mine, &MeasureScore::mass);
         append(text, "  %-28s %3zu/%-2zu %8.3f %8.3f %8.1f\n", name.c_str(), mass.size(),
-               static_cast<std::size_t>(std::ranges::count_if(scores, mine)), mean(mass),
-               mean(known(scores, &MeasureScore::barrier, mine)),
-               1000 * mean(known(scores, &MeasureScore::center_m, mine)));
+               mine.size(), mean(mass), mean(known(mine, &MeasureScore::barrier)),
+               1000 * mean(known(mine, &MeasureScore::center_m)));
     }
-    const auto all = [](const MeasureScore&) { return true; };
-    add_spread(known(scores, &MeasureScore::mass, all), "mass", text);
-    add_spread(known(scores, &MeasureScore::barrier, all), "barrier", text);
-    add_sigmas(known(scores, &MeasureScore::mass_sigmas, all), "mass", text);
+    add_spread(known(scores, &MeasureScore::mass), "mass", text);
+    add_spread(known(scores, &MeasureScore::barrier), "barrier", text);
+    add_sigmas(known(scores, &MeasureScore::mass_sigmas), "mass", text);
     std::vector<double> centers;
     for (const MeasureScore& s : scores)
         for (const double v : s.center_sigmas)
             if (std::isfinite(v)) centers.push_back(v);
     add_sigmas(centers, "center", text);
-    add_sigmas(known(scores, &MeasureScore::barrier_sigmas, all), "barrier", text);
+    add_sigmas(known(scores, &MeasureScore::barrier_sigmas), "barrier", text);
     return text;
 }
 

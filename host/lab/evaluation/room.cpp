@@ -23,20 +23,6 @@ void move(const Mat4& m, Points& points) {
     }
 }
 
-// From the camera's frame, which is all that a single frame knows, to the input's.
-void move(const Mat4& m, Scene& scene) {
-    move(m, scene.points);
-    move(m, scene.solid);
-    ScenePoints& points = scene.points;
-    for (std::size_t n = 0; n < points.nx.size(); ++n) {
-        const Vec3 v = turned(m, {points.nx[n], points.ny[n], points.nz[n]});
-        points.nx[n] = static_cast<float>(v[0]);
-        points.ny[n] = static_cast<float>(v[1]);
-        points.nz[n] = static_cast<float>(v[2]);
-    }
-    scene.up = turned(m, scene.up);
-}
-
 // Whether a place projects into the image within the range.
 bool in_image(const Intrinsics& k, const Mat4& m, double range_m, const Vec3& p) {
     const double d[3] = {p[0] - m[3], p[1] - m[7], p[2] - m[11]};
@@ -51,9 +37,6 @@ void put(SolidVoxels& list, float x, float y, float z) {
     list.x.push_back(x);
     list.y.push_back(y);
     list.z.push_back(z);
-    list.primitive.push_back(-1);
-    list.object.push_back(-1);
-    list.state.push_back(0);
 }
 
 }  // namespace
@@ -67,8 +50,12 @@ Room scan_and_parse(const RoomOptions& options) {
     scenes::write_sequence(folder.path(), room.world, room.sequence);
     room.parse = parse(folder.path(), options.parse);
     if (options.camera.single) {
-        room.input_from_grid = room.sequence.frames.front().camera_to_world;
-        move(room.input_from_grid, room.parse.scene);
+        // A single frame knows the camera's frame alone.
+        const Mat4& m = room.input_from_grid = room.sequence.frames.front().camera_to_world;
+        Scene& scene = room.parse.scene;
+        move(m, scene.points);
+        move(m, scene.solid);
+        scene.up = turned(m, scene.up);
     }
     room.part = scenes::true_parts(room.world, room.parse.scene.points);
     return room;

@@ -23,8 +23,9 @@ struct Room {
     scenes::World world;
     scenes::CameraOptions camera;
     scenes::Sequence sequence;
-    // The scene's points, solid voxels and up are in the world's input frame. The voxel grid is in
-    // the frame of what was parsed: the camera's, where that was a single frame.
+    // The places of the scene's points and solid voxels, and its up, are in the world's input
+    // frame. The voxel grid is in the frame of what was parsed: the camera's, where that was a
+    // single frame.
     ParseResult parse;
     Mat4 input_from_grid = scenes::identity;
     std::vector<std::int32_t> part;  // the true part of each point, -1 for none
@@ -39,10 +40,10 @@ scenes::Domain in_view(const scenes::World& world, const scenes::CameraOptions& 
                        const scenes::Sequence& sequence);
 
 // All voxels within the scan's bounds and the domain that were not seen to be empty, in the world's
-// input frame. Every voxel has state 0 and no primitive.
+// input frame. Places alone.
 SolidVoxels never_seen_empty(const Room& room, const scenes::Domain& domain);
 
-// The voxels whose state is 0.
+// The places of the voxels whose state is 0.
 SolidVoxels surface_alone(const SolidVoxels& solid);
 
 // The measures of the paper's Section 6.

@@ -2,7 +2,6 @@
 #include "lab/evaluation/tables.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -116,11 +115,7 @@ Columns columns_of(const RoomScore& r) {
 
 Spread spread(const std::vector<RoomScore>& rooms,
               const std::function<double(const RoomScore&)>& measure) {
-    std::vector<double> values;
-    for (const RoomScore& room : rooms) {
-        const double v = measure(room);
-        if (!std::isnan(v)) values.push_back(v);
-    }
+    std::vector<double> values = known(rooms, measure);
     const double none = std::numeric_limits<double>::quiet_NaN();
     if (values.empty()) return {none, none, none};
     std::sort(values.begin(), values.end());

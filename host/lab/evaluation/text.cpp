@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lab/evaluation/text.h"
 
-#include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
+#include <numeric>
 
 namespace topple::evaluation {
 
@@ -21,6 +22,11 @@ std::string percent(double share) {
     char digits[32];
     std::snprintf(digits, sizeof(digits), "%.1f", 100 * share);
     return digits;
+}
+
+double mean(const std::vector<double>& values) {
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 }  // namespace topple::evaluation

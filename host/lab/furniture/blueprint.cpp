@@ -5,12 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "core/vectors.h"
+
 namespace topple::scenes {
 namespace {
 
-// A part without a turn whose lowest point is at `bottom`.
-Part upright(Shape shape, const char* name, double x, double y, double bottom, const Vec3& size) {
-    return {shape, {x, y, bottom + size[2] / 2}, size, 0, 0, -1, name};
+// A part that does not lean and whose lowest point is at `bottom`.
+Part upright(Shape shape, const char* name, double x, double y, double bottom, const Vec3& size,
+             double yaw = 0) {
+    return {shape, {x, y, bottom + size[2] / 2}, size, yaw, 0, -1, name};
 }
 
 }  // namespace
@@ -22,9 +25,7 @@ int Blueprint::add(Part part) {
 
 int Blueprint::box(const char* part, double x, double y, double bottom, const Vec3& size,
                    double yaw) {
-    Part p = upright(Shape::box, part, x, y, bottom, size);
-    p.yaw = yaw;
-    return add(std::move(p));
+    return add(upright(Shape::box, part, x, y, bottom, size, yaw));
 }
 
 int Blueprint::cylinder(const char* part, double x, double y, double bottom, double diameter,
@@ -34,9 +35,8 @@ int Blueprint::cylinder(const char* part, double x, double y, double bottom, dou
 
 int Blueprint::lying(const char* part, double x, double y, double bottom, double length,
                      double diameter, double yaw) {
-    Part p = upright(Shape::lying_cylinder, part, x, y, bottom, {length, diameter, diameter});
-    p.yaw = yaw;
-    return add(std::move(p));
+    return add(
+        upright(Shape::lying_cylinder, part, x, y, bottom, {length, diameter, diameter}, yaw));
 }
 
 int Blueprint::sphere(const char* part, double x, double y, double bottom, double diameter) {
@@ -93,7 +93,7 @@ int Blueprint::leaning(const char* part, double x, double y, double bottom, cons
 }
 
 int Blueprint::bar(const char* part, const Vec3& from, const Vec3& to, double diameter) {
-    const Vec3 way{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    const Vec3 way = minus(to, from);
     const double length = std::hypot(way[0], way[1], way[2]);
     const Vec3 middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2};
     Part p{Shape::cylinder, middle, {diameter, diameter, length}, 0, 0, -1, part};
@@ -109,6 +109,15 @@ int Blueprint::leg(const char* part, double x, double y, double bottom, double t
     const double spread = (top - bottom - 2 * rim) * std::tan(lean);
     return bar(part, {x + spread * std::cos(heading), y + spread * std::sin(heading), bottom + rim},
                {x, y, top - rim}, diameter);
+}
+
+void Blueprint::legs(const char* part, double x, double y, double thickness, double height,
+                     bool round, int under) {
+    for (const auto [sx, sy] : corners) {
+        const int leg = foot(round ? cylinder(part, sx * x, sy * y, 0, thickness, height)
+                                   : box(part, sx * x, sy * y, 0, {thickness, thickness, height}));
+        if (under >= 0) join(under, leg);
+    }
 }
 
 void Blueprint::rungs(int left, int right, int count, double diameter) {
@@ -127,16 +136,13 @@ void Blueprint::rungs(int left, int right, int count, double diameter) {
 void Blueprint::arm(int base, const Vec3& from, const std::vector<Segment>& segments,
                     double thickness, double shade) {
     const double ball = 0.8 * thickness;  // radius
-    const auto beyond = [](const Vec3& p, const Vec3& way, double distance) {
-        return Vec3{p[0] + distance * way[0], p[1] + distance * way[1], p[2] + distance * way[2]};
-    };
     Vec3 at{from[0], from[1], from[2] + ball}, across{};
     int last = sphere("joint", at[0], at[1], at[2] - ball, 2 * ball);
     join(base, last);
     for (const Segment& segment : segments) {
         const Vec3 way{0, std::sin(segment.lean), std::cos(segment.lean)};
-        const Vec3 end = beyond(at, way, segment.length);
-        const int rod = bar("arm", beyond(at, way, ball), beyond(end, way, -ball), thickness);
+        const Vec3 end = along(at, segment.length, way);
+        const int rod = bar("arm", along(at, ball, way), along(end, -ball, way), thickness);
         const int joint = sphere("joint", end[0], end[1], end[2] - ball, 2 * ball);
         join(last, rod);
         join(rod, joint);
@@ -146,8 +152,7 @@ void Blueprint::arm(int base, const Vec3& from, const std::vector<Segment>& segm
     }
     // The shade points across the last bar, its narrow end at the ball.
     const double height = 0.8 * shade;
-    const int lamp =
-        bar("shade", beyond(at, across, ball + height), beyond(at, across, ball), shade);
+    const int lamp = bar("shade", along(at, ball + height, across), along(at, ball, across), shade);
     Part& part = parts[lamp];
     part.shape = Shape::cone;
     part.top_ratio = 0.4;
@@ -167,6 +172,24 @@ Bounds Blueprint::bounds() const {
     Bounds all = no_bounds();
     for (const Part& part : parts) extend(all, part.bounds());
     return all;
+}
+
+Blueprint lone_box(const char* name, const char* part, const Vec3& size) {
+    Blueprint b(name);
+    b.foot(b.box(part, 0, 0, 0, size));
+    return b;
+}
+
+Blueprint lone_rounded(const char* name, const char* part, const Vec3& size, double rounding) {
+    Blueprint b(name);
+    b.foot(b.rounded(part, 0, 0, 0, size, rounding));
+    return b;
+}
+
+Blueprint lone_revolved(const char* name, const char* part, solids::Profile profile) {
+    Blueprint b(name);
+    b.foot(b.revolved(part, 0, 0, 0, std::move(profile)));
+    return b;
 }
 
 }  // namespace topple::scenes

@@ -63,6 +63,10 @@ struct Blueprint {
     // foot further on by `heading` (0: towards +x), `lean` from the vertical.
     int leg(const char* part, double x, double y, double bottom, double top, double diameter,
             double lean, double heading);
+    // Four upright ones to stand on, at (x, y) and its like about the middle, square or round;
+    // fixed to the part `under`, unless that is -1.
+    void legs(const char* part, double x, double y, double thickness, double height,
+              bool round = false, int under = -1);
     // Round rungs from one leaning box to another beside it, evenly up their length.
     void rungs(int left, int right, int count, double diameter);
     // A lamp's arm: from a ball that stands at `from` on part `base`, bars with a ball after each,
@@ -89,6 +93,19 @@ struct Blueprint {
     double height() const { return bounds()[1][2]; }
     double back() const { return bounds()[0][1]; }
 };
+
+// Things of one part, on which they stand.
+Blueprint lone_box(const char* name, const char* part, const Vec3& size);
+Blueprint lone_rounded(const char* name, const char* part, const Vec3& size, double rounding);
+Blueprint lone_revolved(const char* name, const char* part, solids::Profile profile);
+
+using Stack = std::vector<Blueprint>;  // things on one another, lowest first
+
+inline double stack_height(const Stack& stack) {
+    double high = 0;
+    for (const Blueprint& b : stack) high += b.height();
+    return high;
+}
 
 // What one of these makes, each as likely.
 using BlueprintMake = Blueprint (*)(Random&);
@@ -117,7 +134,7 @@ Blueprint make_roll(Random& random);
 Blueprint make_marker(Random& random);
 
 // Things that stand on other things, at most `height` high and with a footprint radius of at most
-// `radius`. Returns one blueprint, or several that stand on one another, lowest first.
-std::vector<Blueprint> make_item(Random& random, double height, double radius);
+// `radius`.
+Stack make_item(Random& random, double height, double radius);
 
 }  // namespace topple::scenes

@@ -24,22 +24,16 @@ Blueprint screen_on_stand(Random& random, double w, const char* name) {
     return b;
 }
 
-Blueprint flat_box(const char* name, const Vec3& size) {
-    Blueprint b(name);
-    b.foot(b.box("body", 0, 0, 0, size));
-    return b;
-}
-
 Blueprint desk_monitor(Random& random) {
     return screen_on_stand(random, random(0.42, 0.72), "monitor");
 }
 
 Blueprint mouse(Random&) {
-    return flat_box("mouse", {0.065, 0.11, 0.035});
+    return lone_box("mouse", "body", {0.065, 0.11, 0.035});
 }
 
 Blueprint paper(Random& random) {
-    return flat_box("paper", {0.21, 0.297, random(0.01, 0.08)});
+    return lone_box("paper", "body", {0.21, 0.297, random(0.01, 0.08)});
 }
 
 Blueprint small_bush(Random& random) {
@@ -72,7 +66,7 @@ Stack books(Random& random) {
     Stack stack;
     for (int k = random.integer(1, 5); k > 0; --k)
         stack.push_back(
-            flat_box("book", {random(0.14, 0.24), random(0.19, 0.3), random(0.012, 0.05)}));
+            lone_box("book", "body", {random(0.14, 0.24), random(0.19, 0.3), random(0.012, 0.05)}));
     return stack;
 }
 
@@ -137,15 +131,10 @@ Blueprint make_bush(Random& random, double scale) {
         b.bar("stem", {0, 0, 0.75 * h}, to, 0.008 + 0.008 * scale);
         for (int leaf = random.integer(2, 5); leaf > 0; --leaf) {
             const double f = random(0.4, 1.0);
-            Part part{Shape::box,
-                      {f * to[0], f * to[1], 0.75 * h + f * (to[2] - 0.75 * h)},
-                      {scale * random(0.05, 0.12), scale * random(0.12, 0.3), 0.004},
-                      random(-pi, pi),
-                      0,
-                      -1,
-                      "leaf"};
-            part.lean = random(-0.9, 0.9);
-            b.parts.push_back(part);
+            const Vec3 middle{f * to[0], f * to[1], 0.75 * h + f * (to[2] - 0.75 * h)};
+            const Vec3 size{scale * random(0.05, 0.12), scale * random(0.12, 0.3), 0.004};
+            const double yaw = random(-pi, pi), lean = random(-0.9, 0.9);
+            b.add({Shape::box, middle, size, yaw, 0, -1, "leaf", lean});
         }
     }
     return b;
@@ -211,16 +200,14 @@ Stack make_home_item(Random& random, double clearance) {
 Stack make_soft_item(Random& random, double clearance) {
     Stack stack;
     if (random.chance(0.6)) {
-        Blueprint b("pillow");
         const double t = random(0.09, 0.16);
-        b.foot(b.rounded("pillow", 0, 0, 0, {random(0.35, 0.7), random(0.3, 0.42), t}, 0.46 * t));
-        stack.push_back(b);
+        const Vec3 size{random(0.35, 0.7), random(0.3, 0.42), t};
+        stack.push_back(lone_rounded("pillow", "pillow", size, 0.46 * t));
     } else {
         for (int k = random.integer(1, 4); k > 0; --k) {
-            Blueprint b("clothes");
             const double t = random(0.03, 0.07);
-            b.foot(b.rounded("cloth", 0, 0, 0, {random(0.22, 0.36), random(0.2, 0.3), t}, 0.4 * t));
-            stack.push_back(b);
+            const Vec3 size{random(0.22, 0.36), random(0.2, 0.3), t};
+            stack.push_back(lone_rounded("clothes", "cloth", size, 0.4 * t));
         }
     }
     return stack_height(stack) < clearance ? stack : Stack{};

@@ -98,19 +98,29 @@ int add_cabinet(Blueprint& b, const CabinetPlace& p, Random& random, double open
     return body;
 }
 
+namespace {
+
+// Cabinets side by side, all along x.
+void add_cabinets(Blueprint& b, const Vec3& size, double back, double bottom, Random& random,
+                  double open) {
+    const auto [length, d, h] = size;
+    for (double x = -length / 2; x < length / 2 - 0.05;) {
+        double w = random(0.3, 0.8);
+        if (x + w > length / 2 - 0.3) w = length / 2 - x;
+        add_cabinet(b, {x + w / 2, back, bottom, {w, d, h}}, random, open);
+        x += w;
+    }
+}
+
+}  // namespace
+
 Blueprint make_counter(Random& random, double length) {
     Blueprint b("counter");
     const double d = random(0.52, 0.65), h = random(0.84, 0.95);
     const double plinth = random(0.08, 0.15), t = random(0.025, 0.045);
     const double back = -d / 2, open = random.chance(0.3) ? 0.4 : 0.05;
     b.box("plinth", 0, back + d / 2 - 0.04, 0, {length, d - 0.08, plinth});
-    double x = -length / 2;
-    while (x < length / 2 - 0.05) {
-        double w = random(0.3, 0.8);
-        if (x + w > length / 2 - 0.3) w = length / 2 - x;
-        add_cabinet(b, {x + w / 2, back, plinth, {w, d - 0.025, h - t - plinth}}, random, open);
-        x += w;
-    }
+    add_cabinets(b, {length, d - 0.025, h - t - plinth}, back, plinth, random, open);
     const double top = h - t, deep = d + random(0, 0.03), over = back + deep / 2;
     const double sink = std::min(0.5, 0.3 * length), middle = random(-0.3, 0.3) * length;
     if (length > 1.3 && random.chance(0.7)) {  // the worktop goes around a sink
@@ -149,13 +159,7 @@ Blueprint make_counter(Random& random, double length) {
 Blueprint make_wall_cupboards(Random& random, double length) {
     Blueprint b("wall cabinet");
     const double h = random(0.4, 0.9), d = random(0.28, 0.38);
-    double x = -length / 2;
-    while (x < length / 2 - 0.05) {
-        double w = random(0.3, 0.8);
-        if (x + w > length / 2 - 0.3) w = length / 2 - x;
-        add_cabinet(b, {x + w / 2, 0, 0, {w, d, h}}, random, 0.15);
-        x += w;
-    }
+    add_cabinets(b, {length, d, h}, 0, 0, random, 0.15);
     return b;
 }
 
@@ -173,8 +177,7 @@ Blueprint make_fridge(Random& random) {
     const double w = random(0.54, 0.75), d = random(0.52, 0.65);
     const double h = random(0.85, 1.95), foot = 0.03;
     const int body = b.box("body", 0, 0, foot, {w, d, h - foot});
-    for (const auto [sx, sy] : corners)
-        b.foot(b.cylinder("foot", sx * (w / 2 - 0.05), sy * (d / 2 - 0.05), 0, 0.04, foot));
+    b.legs("foot", w / 2 - 0.05, d / 2 - 0.05, 0.04, foot, true);
     const double split = h > 1.3 ? random(0.3, 0.7) * h : h;
     const double side = random.chance(0.5) ? 1 : -1;
     double from = foot + 0.02;
@@ -218,8 +221,7 @@ Blueprint make_free_cupboard(Random& random) {
     Blueprint b("cupboard");
     const double w = random(0.5, 1.2), d = random(0.32, 0.5), h = random(0.75, 1.9),
                  leg = random(0.03, 0.15);
-    for (const auto [sx, sy] : corners)
-        b.foot(b.box("foot", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), 0, {0.05, 0.05, leg}));
+    b.legs("foot", w / 2 - 0.03, d / 2 - 0.03, 0.05, leg);
     const int top = add_cabinet(b, {0, -d / 2, leg, {w, d, h - leg}}, random, 0.45);
     b.stand_on(top, 0.5, "cupboard", 0.03);
     return b;
@@ -274,26 +276,22 @@ Blueprint jar(Random& random) {
 }
 
 Blueprint food_box(Random& random) {
-    Blueprint b("food box");
-    b.foot(b.box("box", 0, 0, 0, {random(0.08, 0.22), random(0.04, 0.12), random(0.1, 0.32)}));
-    return b;
+    return lone_box("food box", "box", {random(0.08, 0.22), random(0.04, 0.12), random(0.1, 0.32)});
 }
 
 Stack plates(Random& random) {
     Stack stack;
     const double r = random(0.08, 0.14);
     for (int k = random.integer(1, 3); k > 0; --k) {
-        Blueprint b("plate");
-        b.foot(b.revolved("plate", 0, 0, 0, solid_within({{0.6 * r, 0}, {r, 0.02}, {r, 0.024}})));
-        stack.push_back(std::move(b));
+        stack.push_back(
+            lone_revolved("plate", "plate", solid_within({{0.6 * r, 0}, {r, 0.02}, {r, 0.024}})));
     }
     return stack;
 }
 
 Blueprint board_flat(Random& random) {
-    Blueprint b("chopping board");
-    b.foot(b.box("board", 0, 0, 0, {random(0.25, 0.45), random(0.16, 0.3), random(0.01, 0.03)}));
-    return b;
+    return lone_box("chopping board", "board",
+                    {random(0.25, 0.45), random(0.16, 0.3), random(0.01, 0.03)});
 }
 
 Blueprint toaster(Random& random) {

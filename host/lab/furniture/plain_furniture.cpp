@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <vector>
 
 #include "lab/furniture/blueprint.h"
 
@@ -12,15 +11,8 @@ constexpr double over_table = 0.60;  // free height that things on tables may ta
 // Legs at the corners of a w by d rectangle, under `top`, `inset` from its edges.
 void four_legs(Blueprint& b, Random& random, int top, double w, double d, double height,
                double inset, double thickness) {
-    const bool round = random.chance(0.4);
-    for (const auto [sx, sy] : corners) {
-        const double x = sx * (w / 2 - inset - thickness / 2),
-                     y = sy * (d / 2 - inset - thickness / 2);
-        const int leg = round ? b.cylinder("leg", x, y, 0, thickness, height)
-                              : b.box("leg", x, y, 0, {thickness, thickness, height});
-        b.join(top, leg);
-        b.foot(leg);
-    }
+    b.legs("leg", w / 2 - inset - thickness / 2, d / 2 - inset - thickness / 2, thickness, height,
+           random.chance(0.4), top);
 }
 
 }  // namespace
@@ -257,10 +249,9 @@ Blueprint make_bin(Random& random) {
 }
 
 Blueprint make_crate(Random& random) {
-    Blueprint b("crate");
-    const int body =
-        b.foot(b.box("crate", 0, 0, 0, {random(0.28, 0.55), random(0.25, 0.4), random(0.2, 0.45)}));
-    b.stand_on(body, 0.35, "crate");
+    Blueprint b =
+        lone_box("crate", "crate", {random(0.28, 0.55), random(0.25, 0.4), random(0.2, 0.45)});
+    b.stand_on(0, 0.35, "crate");
     return b;
 }
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "lab/furniture/blueprint.h"
 
@@ -21,9 +20,7 @@ Blueprint bottle(Random& random) {
     Blueprint b("bottle");
     const double d = random(0.065, 0.1), h = random(0.17, 0.24);
     const int body = b.foot(b.cylinder("body", 0, 0, 0, d, h));
-    if (random.chance(0.5)) {
-        b.join(body, b.cylinder("neck", 0, 0, h, 0.4 * d, random(0.05, 0.09)));
-    }
+    if (random.chance(0.5)) b.join(body, b.cylinder("neck", 0, 0, h, 0.4 * d, random(0.05, 0.09)));
     return b;
 }
 
@@ -40,9 +37,7 @@ Blueprint ball(Random& random) {
 }
 
 Blueprint plain_carton(Random& random) {
-    Blueprint b("box");
-    b.foot(b.box("box", 0, 0, 0, {random(0.12, 0.28), random(0.1, 0.2), random(0.07, 0.26)}));
-    return b;
+    return lone_box("box", "box", {random(0.12, 0.28), random(0.1, 0.2), random(0.07, 0.26)});
 }
 
 Blueprint vase(Random& random) {
@@ -89,15 +84,13 @@ Blueprint laptop(Random& random) {
 }
 
 // Each book or box is an object of its own; every one lies within the one below.
-std::vector<Blueprint> stack(Random& random) {
-    std::vector<Blueprint> all;
+Stack stack(Random& random) {
+    Stack all;
     double w = random(0.22, 0.3), d = random(0.16, 0.22);
     const int count = random.integer(2, 4);
     for (int k = 0; k < count; ++k) {
-        Blueprint b("book");
-        b.foot(b.box("book", 0, 0, 0, {w, d, random(0.045, 0.09)}));
-        b.stand_on(0, 1, "stack", 0);
-        all.push_back(std::move(b));
+        all.push_back(lone_box("book", "book", {w, d, random(0.045, 0.09)}));
+        all.back().stand_on(0, 1, "stack", 0);
         w *= random(0.75, 0.92);
         d *= random(0.75, 0.92);
     }
@@ -109,7 +102,7 @@ double footprint_radius(const Blueprint& b) {
     return std::hypot(std::max(-box[0][0], box[1][0]), std::max(-box[0][1], box[1][1]));
 }
 
-std::vector<Blueprint> any_item(Random& random) {
+Stack any_item(Random& random) {
     constexpr std::array makes{cup,  bottle,  lying_bottle,    ball,    plain_carton,
                                vase, pyramid, plain_desk_lamp, monitor, laptop};
     const std::size_t which = random.index(makes.size() + 1);
@@ -118,12 +111,10 @@ std::vector<Blueprint> any_item(Random& random) {
 
 }  // namespace
 
-std::vector<Blueprint> make_item(Random& random, double height, double radius) {
+Stack make_item(Random& random, double height, double radius) {
     for (int attempt = 0; attempt < 40; ++attempt) {
         auto item = any_item(random);
-        double total = 0;
-        for (const Blueprint& b : item) total += b.height();
-        if (total <= height && footprint_radius(item.front()) <= radius) return item;
+        if (stack_height(item) <= height && footprint_radius(item.front()) <= radius) return item;
     }
     return {};
 }

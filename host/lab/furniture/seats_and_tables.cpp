@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "lab/furniture/profiles.h"
 #include "lab/furniture/things.h"
 
 namespace topple::scenes {
@@ -11,13 +10,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Four upright legs under a slab whose lower face is at `high`.
+// Legs at the corners of a slab whose lower face is at `high`.
 void add_legs(Blueprint& b, double w, double d, double high, double thick, bool round) {
-    for (const auto [sx, sy] : corners) {
-        const double x = sx * (w - thick) / 2, y = sy * (d - thick) / 2;
-        b.foot(round ? b.cylinder("leg", x, y, 0, thick, high)
-                     : b.box("leg", x, y, 0, {thick, thick, high}));
-    }
+    b.legs("leg", (w - thick) / 2, (d - thick) / 2, thick, high, round);
 }
 
 }  // namespace
@@ -149,8 +144,7 @@ Blueprint make_work_table(Random& random) {
 Blueprint make_drawer_unit(Random& random) {
     Blueprint b("drawer unit");
     const double w = random(0.35, 0.9), d = random(0.35, 0.55), h = random(0.4, 1.1);
-    for (const auto [sx, sy] : corners)
-        b.foot(b.cylinder("caster", sx * (w / 2 - 0.04), sy * (d / 2 - 0.04), 0, 0.04, 0.04));
+    b.legs("caster", w / 2 - 0.04, d / 2 - 0.04, 0.04, 0.04, true);
     const int top = add_cabinet(b, {0, -d / 2, 0.04, {w, d - 0.02, h - 0.04}}, random, 0.15);
     b.stand_on(top, 0.5, "drawers", 0.02);
     return b;
@@ -185,8 +179,7 @@ Blueprint make_couch(Random& random) {
     const double w = seats * seat + 2 * arm, d = random(0.75, 1.0);
     const double foot = random(0.02, 0.14), base = random(0.12, 0.25);
     const double back = random(0.12, 0.25), high = random(0.68, 0.95);
-    for (const auto [sx, sy] : corners)
-        b.foot(b.cylinder("foot", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, 0.045, foot));
+    b.legs("foot", w / 2 - 0.06, d / 2 - 0.06, 0.045, foot, true);
     b.box("base", 0, 0, foot, {w, d, base});
     const double top = foot + base, soft = random(0.1, 0.18);
     b.rounded("backrest", 0, -d / 2 + back / 2, top, {w, back, high - top}, 0.3 * back);
@@ -213,8 +206,7 @@ Blueprint make_tv_board(Random& random) {
     Blueprint b("low board");
     const double w = random(1.0, 2.2), d = random(0.32, 0.48), h = random(0.3, 0.7),
                  leg = random(0.04, 0.18);
-    for (const auto [sx, sy] : corners)
-        b.foot(b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.05), 0, {0.04, 0.04, leg}));
+    b.legs("leg", w / 2 - 0.06, d / 2 - 0.05, 0.04, leg);
     const int cells = random.integer(2, 4);
     for (int k = 0; k < cells; ++k)
         add_cabinet(b,

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
 
 namespace topple::scenes {
 namespace {
-
-using std::numbers::pi;
 
 // Rounded slabs that overlap at different heights: one soft, uneven body over a rectangle.
 void add_folds(Blueprint& b, const char* part, double x, double y, double bottom, const Vec3& size,
@@ -77,9 +73,7 @@ Blueprint make_corner_sofa(Random& random) {
     if (random.chance(0.6))
         b.rounded("armrest", -side * (w / 2 + 0.08), -back / 2, foot,
                   {0.16, deep + back, top + 0.18 - foot}, 0.05);
-    for (const auto [sx, sy] : corners)
-        b.foot(
-            b.cylinder("foot", sx * (w / 2 - 0.08), sy * (deep / 2 - 0.06), 0, 0.05, foot + 0.001));
+    b.legs("foot", w / 2 - 0.08, deep / 2 - 0.06, 0.05, foot + 0.001, true);
     b.foot(b.cylinder("foot", end, deep / 2 + chaise - 0.08, 0, 0.05, foot + 0.001));
     return b;
 }
@@ -113,9 +107,7 @@ Blueprint make_soft_bed(Random& random) {
     const double w = random(0.8, 2.0), d = random(1.9, 2.15);
     const double low = random.chance(0.4) ? 0.02 : random(0.08, 0.25), frame = random(0.1, 0.25),
                  soft = random(0.14, 0.3);
-    for (const auto [sx, sy] : corners)
-        b.foot(
-            b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, {0.07, 0.07, low + 0.001}));
+    b.legs("leg", w / 2 - 0.06, d / 2 - 0.06, 0.07, low + 0.001);
     b.box("frame", 0, 0, low, {w, d, frame});
     const double top = low + frame + soft - 0.03;
     b.rounded("mattress", 0, 0, low + frame - 0.03, {w - 0.02, d - 0.02, soft}, 0.06);

@@ -144,6 +144,19 @@ Blueprint make_trolley(Random& random) {
     return b;
 }
 
+Blueprint make_pallet_jack(Random& random) {
+    Blueprint b("pallet jack");
+    const double length = 1.15, high = random(0.05, 0.1);
+    for (const double s : {-1.0, 1.0}) {
+        b.box("fork", s * 0.19, 0, high - 0.05 + 0.03, {0.16, length, 0.05});
+        b.foot(b.lying("wheel", s * 0.19, length / 2 - 0.12, 0, 0.07, 0.08));
+    }
+    b.box("body", 0, -length / 2 - 0.06, 0.06, {0.5, 0.14, 0.4});
+    b.foot(b.lying("wheel", 0, -length / 2 - 0.1, 0, 0.2, 0.16));
+    b.bar("tiller", {0, -length / 2 - 0.08, 0.4}, {0, -length / 2 - random(0.1, 0.4), 1.15}, 0.04);
+    return b;
+}
+
 Blueprint make_bucket(Random& random) {
     Blueprint b("bucket");
     const double r = random(0.11, 0.16), h = random(0.22, 0.34);
@@ -210,32 +223,15 @@ Blueprint make_gondola(Random& random) {
 }
 
 Stack make_store_item(Random& random, double clearance) {
+    constexpr std::array<BlueprintMake, 3> makes{crate, canister, make_bucket};
+    const auto which = static_cast<std::size_t>(random.integer(0, 6));
+    const Blueprint one =
+        which < makes.size() ? makes[which](random) : make_carton(random, random(0.2, 0.7));
+    int count = which < makes.size() ? 1 : random.integer(1, 3);
+    if (one.parts.size() >= 3) count = 1;  // on an open carton stands nothing
     Stack stack;
-    switch (random.integer(0, 6)) {
-        case 0:
-            stack = {crate(random)};
-            break;
-        case 1:
-            stack = {canister(random)};
-            break;
-        case 2:
-            stack = {make_bucket(random)};
-            break;
-        default: {
-            Blueprint below = make_carton(random, random(0.2, 0.7));
-            for (int k = random.integer(1, 3); k > 0; --k) {
-                if (below.parts.size() < 3) stack.push_back(below);
-                if (below.parts.size() >= 3 && stack.empty()) stack.push_back(below);
-            }
-        }
-    }
-    double high = 0;
-    Stack out;
-    for (const Blueprint& b : stack) {
-        high += b.height();
-        if (high < clearance) out.push_back(b);
-    }
-    return out;
+    while (count-- > 0 && stack_height(stack) + one.height() < clearance) stack.push_back(one);
+    return stack;
 }
 
 Stack make_shop_item(Random& random, double clearance) {

@@ -11,14 +11,6 @@
 // that of Blueprint. `pile` marks goods in rows.
 namespace topple::scenes {
 
-using Stack = std::vector<Blueprint>;  // things on one another, lowest first
-
-inline double stack_height(const Stack& stack) {
-    double high = 0;
-    for (const Blueprint& b : stack) high += b.height();
-    return high;
-}
-
 // Makes what stands on a surface with this free height.
 struct ItemMake : std::function<Stack(Random&, double)> {
     ItemMake(Stack (*make)(Random&, double)) : function(make) {}
@@ -55,11 +47,14 @@ Blueprint make_appliance(Random& random);  // dishwasher, washing machine, oven
 Blueprint make_free_cupboard(Random& random);
 Stack make_kitchen_item(Random& random, double clearance);
 
-// Bathroom.
+// Bathroom and laundry.
 Blueprint make_basin(Random& random);
 Blueprint make_toilet(Random& random);
 Blueprint make_bath(Random& random);  // a tub or a shower
 Blueprint make_towel_rail(Random& random);
+Blueprint make_washer(Random& random, const Vec3& size);
+Blueprint make_ironing_board(Random& random);
+Blueprint make_drying_rack(Random& random);
 Stack make_bath_item(Random& random, double clearance);
 
 // Rooms to live and work in.
@@ -89,6 +84,7 @@ Blueprint make_carton(Random& random, double most);
 Blueprint make_rack(Random& random, double most_height);
 Blueprint make_pallet(Random& random);
 Blueprint make_trolley(Random& random);
+Blueprint make_pallet_jack(Random& random);
 Blueprint make_bucket(Random& random);
 Blueprint make_drum(Random& random);
 Blueprint make_step_ladder(Random& random);
@@ -124,12 +120,6 @@ Blueprint make_ottoman(Random& random);
 Blueprint make_wall_curtain(Random& random, double length, double height);  // to be fixed
 Blueprint make_soft_bed(Random& random);                   // an uneven duvet, pillows
 Stack make_floor_thing(Random& random, double clearance);  // bags, boxes, bins, heaps
-
-// Laundries and depots.
-Blueprint make_washer(Random& random, const Vec3& size);
-Blueprint make_ironing_board(Random& random);
-Blueprint make_drying_rack(Random& random);
-Blueprint make_pallet_jack(Random& random);
 
 // Single things among those of make_varied_item() and make_item(); empty where chance offers none.
 Stack make_turned_item(Random& random, double clearance);

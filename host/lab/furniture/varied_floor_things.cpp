@@ -13,10 +13,9 @@ using std::numbers::pi;
 
 int make_pot(Blueprint& b, double r, double h) {
     // A rim that stands out a little.
-    const int pot = b.foot(
+    return b.foot(
         b.revolved("pot", 0, 0, 0,
                    solid_within({{0.72 * r, 0}, {0.95 * r, 0.85 * h}, {r, 0.86 * h}, {r, h}})));
-    return pot;
 }
 
 }  // namespace
@@ -30,8 +29,7 @@ Blueprint make_topiary(Random& random) {
     for (int k = random.integer(1, 2); k > 0; --k) {
         const double stem = random(0.12, 0.35);
         const int trunk = b.join(below, b.cylinder("trunk", 0, 0, z, 0.035, stem));
-        const int crown = b.join(trunk, b.sphere("crown", 0, 0, z + stem, ball));
-        below = crown;
+        below = b.join(trunk, b.sphere("crown", 0, 0, z + stem, ball));
         z += stem + ball;
         ball *= random(0.6, 0.85);
     }
@@ -85,32 +83,27 @@ Blueprint make_coat_stand(Random& random) {
 }
 
 Blueprint make_barrel(Random& random) {
-    Blueprint b("barrel");
     const double r = random(0.16, 0.24), h = random(0.45, 0.7);
     const double belly = r * random(1.1, 1.25);
-    const int body =
-        b.foot(b.revolved("barrel", 0, 0, 0, solid_within(smooth_side({r, belly, belly, r}, h))));
-    b.surfaces.push_back({body, 0, 0, 0.65 * r, 0.65 * r, 0.4, "barrel"});
+    Blueprint b =
+        lone_revolved("barrel", "barrel", solid_within(smooth_side({r, belly, belly, r}, h)));
+    b.surfaces.push_back({0, 0, 0, 0.65 * r, 0.65 * r, 0.4, "barrel"});
     return b;
 }
 
 // A bin or basket that one can look into.
 Blueprint make_open_bin(Random& random) {
-    Blueprint b("open bin");
     const double r = random(0.11, 0.17), h = random(0.25, 0.42);
     const double top = r * random(1.05, 1.4);
     const Side side =
         random.chance(0.5) ? Side{{r, 0}, {top, h}} : smooth_side({r, 1.15 * top, top}, h);
-    b.foot(b.revolved("bin", 0, 0, 0, vessel_within(side, random(0.008, 0.014), 0.015)));
-    return b;
+    return lone_revolved("open bin", "bin", vessel_within(side, random(0.008, 0.014), 0.015));
 }
 
 // Soft luggage.
 Blueprint make_bag(Random& random) {
-    Blueprint b("bag");
     const Vec3 size{random(0.35, 0.55), random(0.18, 0.28), random(0.25, 0.5)};
-    b.foot(b.rounded("bag", 0, 0, 0, size, random(0.2, 0.42) * size[1]));
-    return b;
+    return lone_rounded("bag", "bag", size, random(0.2, 0.42) * size[1]);
 }
 
 Blueprint make_dumbbell(Random& random) {

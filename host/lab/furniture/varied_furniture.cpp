@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -31,12 +30,11 @@ Blueprint make_splayed_table(Random& random) {
 
 // One turned body: wide at the foot and the top.
 Blueprint make_drum_table(Random& random) {
-    Blueprint b("side table");
     const double r = random(0.2, 0.3), h = random(0.42, 0.6);
     const double waist = r * random(0.35, 0.9), top = r * random(0.9, 1.2);
-    const int body = b.foot(b.revolved(
-        "body", 0, 0, 0, solid_within(smooth_side({r, 0.9 * r, waist, waist, top, top}, h))));
-    b.surfaces.push_back({body, 0, 0, 0.65 * top, 0.65 * top, over_varied_table, "table"});
+    Blueprint b = lone_revolved("side table", "body",
+                                solid_within(smooth_side({r, 0.9 * r, waist, waist, top, top}, h)));
+    b.surfaces.push_back({0, 0, 0, 0.65 * top, 0.65 * top, over_varied_table, "table"});
     return b;
 }
 
@@ -47,10 +45,7 @@ Blueprint make_made_bed(Random& random) {
     const double leg = random(0.1, 0.22), frame = random(0.08, 0.16);
     const double soft = random(0.14, 0.22), top = leg + frame;
     const int board = b.box("frame", 0, 0, leg, {w, d, frame});
-    for (const auto [sx, sy] : corners) {
-        b.foot(b.join(
-            board, b.box("foot", sx * (w / 2 - 0.05), sy * (d / 2 - 0.05), 0, {0.07, 0.07, leg})));
-    }
+    b.legs("foot", w / 2 - 0.05, d / 2 - 0.05, 0.07, leg, false, board);
     const int mattress =
         b.join(board, b.rounded("mattress", 0, 0, top, {w - 0.05, d - 0.05, soft}, 0.3 * soft));
     b.foot(b.join(
@@ -66,10 +61,7 @@ Blueprint make_loft_bed(Random& random) {
     const double w = random(1.9, 2.05), d = random(0.85, 1.0);
     const double under = random(1.3, 1.55), t = 0.05, post = 0.07;
     const int slab = b.box("slab", 0, 0, under, {w, d, t});
-    for (const auto [sx, sy] : corners) {
-        b.foot(b.join(
-            slab, b.box("post", sx * (w - post) / 2, sy * (d - post) / 2, 0, {post, post, under})));
-    }
+    b.legs("post", (w - post) / 2, (d - post) / 2, post, under, false, slab);
     b.join(slab, b.rounded("mattress", 0, -0.08, under + t, {w - 0.1, d - 0.2, 0.14}, 0.04));
     // A stringer's back touches the slab's upper front edge, a thickness below its own end.
     const double lean = random(0.18, 0.26), width = 0.4, thick = 0.03, deep = 0.07;

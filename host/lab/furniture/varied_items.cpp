@@ -11,10 +11,8 @@ namespace {
 
 using std::numbers::pi;
 
-Blueprint turned(const char* name, const solids::Profile& profile) {
-    Blueprint b(name);
-    b.foot(b.revolved(name, 0, 0, 0, profile));
-    return b;
+Blueprint turned(const char* name, solids::Profile profile) {
+    return lone_revolved(name, name, std::move(profile));
 }
 
 Blueprint glass_bottle(Random& random) {
@@ -142,10 +140,9 @@ Group book_row(Random& random) {
     const int count = random.integer(3, 7);
     double x = 0;
     for (int k = 0; k < count; ++k) {
-        Blueprint b("upright book");
         const double t = random(0.02, 0.05), d = random(0.13, 0.19);
-        b.foot(b.box("book", 0, 0, 0, {t, d, random(0.18, 0.27)}));
-        row.push_back({std::move(b), {x + t / 2, random(-0.02, 0.02), 0, 0}});
+        Blueprint book = lone_box("upright book", "book", {t, d, random(0.18, 0.27)});
+        row.push_back({std::move(book), {x + t / 2, random(-0.02, 0.02), 0, 0}});
         x += t + random(0.001, 0.004);
     }
     for (Member& m : row) m.pose.x -= x / 2;
@@ -209,10 +206,9 @@ Group make_varied_item(Random& random, double most_height, double radius) {
 }
 
 Group make_pillow(Random& random) {
-    Blueprint b("pillow");
     const double t = random(0.1, 0.16);
-    b.foot(b.rounded("pillow", 0, 0, 0, {random(0.4, 0.6), random(0.3, 0.38), t}, 0.48 * t));
-    return {{std::move(b), {}}};
+    const Vec3 size{random(0.4, 0.6), random(0.3, 0.38), t};
+    return {{lone_rounded("pillow", "pillow", size, 0.48 * t), {}}};
 }
 
 Group make_pile(Random& random, const Vec3& lowest_size, int count) {
@@ -220,15 +216,13 @@ Group make_pile(Random& random, const Vec3& lowest_size, int count) {
     Vec3 size = lowest_size;
     double z = 0;
     for (int k = 0; k < count; ++k) {
-        Blueprint b("piled box");
         const Vec3 one{size[0] * random(0.8, 1.1), size[1] * random(0.8, 1.1),
                        size[2] * random(0.6, 1.3)};
-        b.foot(b.box("box", 0, 0, 0, one));
         // All that is above a box has its center within a tenth of the sizes from the pile's axis.
         const Pose pose{k == 0 ? 0 : random(-0.1, 0.1) * size[0],
                         k == 0 ? 0 : random(-0.1, 0.1) * size[1], z,
                         k == 0 ? 0 : random(-0.6, 0.6)};
-        pile.push_back({std::move(b), pose, k - 1});
+        pile.push_back({lone_box("piled box", "box", one), pose, k - 1});
         z += one[2];
         for (std::size_t a = 0; a < 2; ++a) size[a] *= random(0.85, 1.0);
     }

@@ -92,10 +92,7 @@ Blueprint make_rounded_sofa(Random& random) {
     const double back = random(0.18, 0.26), leg = random(0.06, 0.14);
     const double base = random(0.16, 0.22), cushion = random(0.14, 0.2);
     const int frame = b.rounded("frame", 0, 0, leg, {w, d, base}, 0.03);
-    for (const auto [sx, sy] : corners) {
-        b.foot(b.join(frame,
-                      b.cylinder("foot", sx * (w / 2 - 0.1), sy * (d / 2 - 0.1), 0, 0.05, leg)));
-    }
+    b.legs("foot", w / 2 - 0.1, d / 2 - 0.1, 0.05, leg, true, frame);
     const double top = leg + base, inner = w - 2 * arm;
     b.join(frame, b.rounded("back", 0, -d / 2 + back / 2 + 0.01, top,
                             {inner, back, cushion + random(0.28, 0.4)}, 0.4 * back));
@@ -133,14 +130,13 @@ Blueprint make_bolster_armchair(Random& random) {
 }
 
 Blueprint make_pouf(Random& random) {
-    Blueprint b("pouf");
     const double r = random(0.2, 0.3), h = random(0.3, 0.42);
     const double foot = random(0.55, 0.75) * r;
-    const int body = b.foot(b.revolved(
-        "pouf", 0, 0, 0,
+    Blueprint b = lone_revolved(
+        "pouf", "pouf",
         solid_within(joined({{foot, 0}}, joined(quarter(foot, 0, r - foot, h / 2, true),
-                                                quarter(r, h / 2, foot - r, h / 2, false))))));
-    b.surfaces.push_back({body, 0, 0, 0.6 * foot, 0.6 * foot, 0.3, "seat"});
+                                                quarter(r, h / 2, foot - r, h / 2, false)))));
+    b.surfaces.push_back({0, 0, 0, 0.6 * foot, 0.6 * foot, 0.3, "seat"});
     return b;
 }
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
@@ -15,9 +14,7 @@ namespace {
 using std::numbers::pi;
 
 Blueprint block(const char* name, const Vec3& size) {
-    Blueprint b(name);
-    b.foot(b.box("box", 0, 0, 0, size));
-    return b;
+    return lone_box(name, "box", size);
 }
 
 // Builds things that just about stand, each from a place on a level carrier on.
@@ -37,8 +34,8 @@ class Balancer {
     void overhang(const Pose& middle, double edge, std::int32_t carrier) {
         const Vec3 size = any_size(1, 0.8);
         const double out = random_(0.1, 0.42) * size[1];
-        const Vec3 p = moved(middle, Vec3{random_(-0.3, 0.3) * edge, edge + out - size[1] / 2, 0});
-        put(block("box", size), {p[0], p[1], middle.z, middle.yaw}, {carrier});
+        const Pose pose = at(middle, random_(-0.3, 0.3) * edge, edge + out - size[1] / 2, 0);
+        put(block("box", size), pose, {carrier});
     }
 
   private:
@@ -194,15 +191,14 @@ void furnish_precarious(Composer& room) {
         const double top = table.height();
         Balancer small(room, random(0.45, 0.8));
         for (int n = random.integer(2, 6); n > 0; --n) {
-            const Vec3 p = moved(at.pose, Vec3{surface.x + random(-0.75, 0.75) * surface.half_x,
-                                               surface.y + random(-0.6, 0.6) * surface.half_y, 0});
-            const double yaw = random.chance(0.5) ? 0 : random(-pi, pi);
-            small.build_at({p[0], p[1], top, at.pose.yaw + yaw}, carrier);
+            const Pose pose{surface.x + random(-0.75, 0.75) * surface.half_x,
+                            surface.y + random(-0.6, 0.6) * surface.half_y, top,
+                            random.chance(0.5) ? 0 : random(-pi, pi)};
+            small.build_at(moved(at.pose, pose), carrier);
         }
-        if (random.chance(0.6)) {
-            const Vec3 p = moved(at.pose, Vec3{surface.x, surface.y, 0});
-            small.overhang({p[0], p[1], top, at.pose.yaw}, surface.half_y + 0.005, carrier);
-        }
+        if (random.chance(0.6))
+            small.overhang(moved(at.pose, Pose{surface.x, surface.y, top}), surface.half_y + 0.005,
+                           carrier);
     }
     Balancer large(room, random(0.9, 1.7));
     const Vec3& size = room.world().room;
@@ -232,10 +228,10 @@ void furnish_tabletop(Composer& room) {
     if (random.chance(0.5)) {
         Balancer small(room, random(0.35, 0.7));
         for (int n = random.integer(1, 4); n > 0; --n) {
-            const Vec3 p = moved(at.pose, Vec3{surface.x + random(-0.7, 0.7) * surface.half_x,
-                                               surface.y + random(-0.6, 0.6) * surface.half_y, 0});
-            small.build_at({p[0], p[1], at.blueprint.height(), at.pose.yaw + random(-1, 1)},
-                           at.first_part + surface.part);
+            const Pose pose{surface.x + random(-0.7, 0.7) * surface.half_x,
+                            surface.y + random(-0.6, 0.6) * surface.half_y, at.blueprint.height(),
+                            random(-1, 1)};
+            small.build_at(moved(at.pose, pose), at.first_part + surface.part);
         }
     }
     room.fill(table, random(6, 26), table_item);

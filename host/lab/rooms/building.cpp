@@ -150,10 +150,6 @@ void check(const BuildingOptions& o) {
         throw Error(ErrorKind::usage,
                     "--spacing " + short_number(o.spacing_m) + ": expected 0.0005 to 0.5 metres");
     }
-    if (!(o.noise_m >= 0 && o.noise_m <= 0.1)) {
-        throw Error(ErrorKind::usage, "building: the noise is " + short_number(o.noise_m) +
-                                          " m and must be 0 to 0.1");
-    }
 }
 
 }  // namespace
@@ -234,7 +230,7 @@ Building::Room Building::room(std::size_t id) const {
     Random height(options_.seed, heights_stream + at.storey);
     const Vec3 size{widths_[at.column], depths_[at.row], height(2.6, 2.8)};
     room.doors = doors(id, size);
-    RoomOptions furnished{.seed = Random(options_.seed, id).next(), .varied = options_.varied};
+    RoomOptions furnished{.seed = Random(options_.seed, id).bits(), .varied = options_.varied};
     furnished.size = size;
     for (const Door& door : room.doors) add_way(door, size, furnished.keep_free);
     room.world = with_shell(furnished_room(furnished), shell(size, room.doors));

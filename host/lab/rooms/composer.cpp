@@ -113,7 +113,7 @@ bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempt
             turn = random_(-0.15, 0.15);
             off += std::abs(turn) * (box[1][0] - box[0][0]) / 2 + 0.02;
         } else if (random_.chance(0.5) && !placed_.empty()) {  // flush with a neighbour
-            const Placed& next = placed_[random_.integer(0, static_cast<int>(placed_.size()) - 1)];
+            const Placed& next = placed_[random_.index(placed_.size())];
             const auto its = next.blueprint.bounds();
             const double at = wall < 2 ? next.pose.x : next.pose.y;
             const double reach = mirrored ? -its[0][0] : its[1][0];
@@ -195,8 +195,10 @@ bool Composer::before(std::size_t table, int side, const Blueprint& chair) {
                             (in < 0 ? -in : 0);
         const double out = low ? -edge : edge;
         const double yaw = ends ? (low ? -pi / 2 : pi / 2) : (low ? 0 : pi);
-        const Vec3 p = moved(at.pose, ends ? Vec3{out, s, 0} : Vec3{s, out, 0});
-        if (stand(chair, {p[0], p[1], 0, at.pose.yaw + yaw + turn}, {0}, "floor")) return true;
+        Pose pose = moved(at.pose, ends ? Pose{out, s, 0, yaw} : Pose{s, out, 0, yaw});
+        pose.z = 0;
+        pose.yaw += turn;
+        if (stand(chair, pose, {0}, "floor")) return true;
     }
     return false;
 }
@@ -217,9 +219,7 @@ std::vector<std::int32_t> Composer::deck(std::size_t index, const Surface& surfa
 bool Composer::on_surface(std::size_t index, const Surface& surface,
                           const std::vector<Blueprint>& stack) {
     if (stack.empty()) return false;
-    double high = 0;
-    for (const Blueprint& b : stack) high += b.height();
-    if (high > surface.clearance) return false;
+    if (stack_height(stack) > surface.clearance) return false;
     const Placed base = placed_[index];
     const std::vector<std::int32_t> supporters = deck(index, surface);
     const double top = world_.parts[base.first_part + surface.part].top();
@@ -227,22 +227,18 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
         const double yaw = random_.chance(0.45)  ? 0
                            : random_.chance(0.5) ? random_(-0.25, 0.25)
                                                  : random_(-pi, pi);
-        Vec3 low{1e9, 1e9, 0}, high_corner{-1e9, -1e9, 0};
-        for (const int foot : stack.front().feet) {
-            const auto box = moved({0, 0, 0, yaw}, stack.front().parts[foot]).bounds();
-            for (std::size_t a = 0; a < 2; ++a) {
-                low[a] = std::min(low[a], box[0][a]);
-                high_corner[a] = std::max(high_corner[a], box[1][a]);
-            }
-        }
-        const double room_x = 2 * surface.half_x - (high_corner[0] - low[0]),
-                     room_y = 2 * surface.half_y - (high_corner[1] - low[1]);
+        Bounds feet = no_bounds();
+        for (const int foot : stack.front().feet)
+            extend(feet, moved({0, 0, 0, yaw}, stack.front().parts[foot]).bounds());
+        const auto& [low, high] = feet;
+        const double room_x = 2 * surface.half_x - (high[0] - low[0]),
+                     room_y = 2 * surface.half_y - (high[1] - low[1]);
         if (room_x < 0 || room_y < 0) continue;
-        double u = surface.x - surface.half_x - low[0] + random_.uniform() * room_x;
+        const double u = surface.x - surface.half_x - low[0] + random_.uniform() * room_x;
         double v = surface.y - surface.half_y - low[1] + random_.uniform() * room_y;
         if (random_.chance(0.25)) v = surface.y - surface.half_y - low[1];  // at the back
-        const Vec3 p = moved(base.pose, Vec3{u, v, 0});
-        Pose pose{p[0], p[1], top, base.pose.yaw + yaw};
+        Pose pose = moved(base.pose, Pose{u, v, 0, yaw});
+        pose.z = top;
         // Side by side with the last thing here.
         if (random_.chance(0.3) && placed_.size() > index + 1 && yaw == 0) {
             const Placed& last = placed_.back();
@@ -254,9 +250,8 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
                 const Vec3 beside = moved(last.pose, Vec3{off + side * slack, 0, 0});
                 const Pose back{-base.pose.x, -base.pose.y, 0, 0};
                 const Vec3 local = moved(Pose{0, 0, 0, -base.pose.yaw}, moved(back, beside));
-                if (std::abs(local[0] - surface.x) + (high_corner[0] - low[0]) / 2 <
-                        surface.half_x &&
-                    std::abs(local[1] - surface.y) + (high_corner[1] - low[1]) / 2 < surface.half_y)
+                if (std::abs(local[0] - surface.x) + (high[0] - low[0]) / 2 < surface.half_x &&
+                    std::abs(local[1] - surface.y) + (high[1] - low[1]) / 2 < surface.half_y)
                     pose = {beside[0], beside[1], top, last.pose.yaw};
             }
         }

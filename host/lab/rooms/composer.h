@@ -68,7 +68,7 @@ class Composer : public RoomMaker {
     using RoomMaker::against_wall;
     double wall_length(int wall) const { return world_.room[wall < 2 ? 0 : 1]; }
     const std::vector<int>& walls() const { return walls_; }  // that stand
-    int any_wall() { return walls_[random_.integer(0, last_wall())]; }
+    int any_wall() { return walls_[random_.index(walls_.size())]; }
     double skirting() const { return skirting_; }  // m that it keeps furniture off the walls
     // Solids of the building itself.
     std::int32_t add_building(Part part) { return add_own(std::move(part)); }
@@ -80,7 +80,6 @@ class Composer : public RoomMaker {
         double from, to, bottom, top;
         bool door;
     };
-    int last_wall() const { return static_cast<int>(walls_.size()) - 1; }
     void build_wall(int wall, double height, const std::vector<Opening>& openings);
     void wall_piece(int wall, const char* name, double from, double to, double bottom, double top,
                     double inset, double deep);

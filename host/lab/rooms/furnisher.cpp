@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace topple::scenes {
 namespace {
@@ -68,18 +67,14 @@ bool Furnisher::is_kept_free(const Bounds& box) const {
 
 bool Furnisher::fits(const Blueprint& blueprint, const Pose& pose, std::int32_t supporter,
                      std::int32_t wall) const {
-    const auto middle = free_middle(world_);
+    const auto half = free_middle(world_);
+    const double x = world_.room[0] / 2, y = world_.room[1] / 2;
+    const Bounds middle{Vec3{x - half[0], y - half[1], -1},
+                        Vec3{x + half[0], y + half[1], head_height}};
     for (std::size_t k = 0; k < blueprint.parts.size(); ++k) {
         const Part part = moved(pose, blueprint.parts[k]);
         const auto box = part.bounds();
-        if (!blueprint.underfoot && box[0][2] < head_height &&
-            box[0][0] < world_.room[0] / 2 + middle[0] &&
-            box[1][0] > world_.room[0] / 2 - middle[0] &&
-            box[0][1] < world_.room[1] / 2 + middle[1] &&
-            box[1][1] > world_.room[1] / 2 - middle[1]) {
-            return false;
-        }
-        if (!blueprint.underfoot && is_kept_free(box)) return false;
+        if (!blueprint.underfoot && (overlap(box, middle) || is_kept_free(box))) return false;
         const bool foot = has(blueprint.feet, k);
         const bool at_wall = has(blueprint.wall_parts, k) || has(blueprint.leans, k);
         for (std::size_t other = 0; other < world_.parts.size(); ++other) {
@@ -104,12 +99,10 @@ Pose Furnisher::at_wall(std::int32_t wall, double along, double off, double z, d
     return against_wall(wall - 1, along * world_.room[wall <= 2 ? 0 : 1], off, z, turn);
 }
 
-bool Furnisher::place_along_wall(const Blueprint& blueprint, int attempts) {
+bool Furnisher::place_on_floor(const Blueprint& blueprint, int attempts,
+                               const std::function<Pose()>& any) {
     for (int attempt = 0; attempt < attempts; ++attempt) {
-        const auto wall = static_cast<std::int32_t>(random_.integer(1, 4));
-        const double turn = random_.chance(0.25) ? random_(-0.12, 0.12) : 0;
-        const double off = random_(0.02, 0.06) + (turn == 0 ? 0 : 0.1) - blueprint.back();
-        const Pose pose = at_wall(wall, random_.uniform(), off, 0, turn);
+        const Pose pose = any();
         if (!fits(blueprint, pose, floor_part, -1)) continue;
         place(blueprint, pose, floor_part, -1, "floor");
         return true;
@@ -117,15 +110,19 @@ bool Furnisher::place_along_wall(const Blueprint& blueprint, int attempts) {
     return false;
 }
 
+bool Furnisher::place_along_wall(const Blueprint& blueprint, int attempts) {
+    return place_on_floor(blueprint, attempts, [&] {
+        const int wall = random_.integer(1, 4);
+        const double turn = random_.chance(0.25) ? random_(-0.12, 0.12) : 0;
+        const double off = random_(0.02, 0.06) + (turn == 0 ? 0 : 0.1) - blueprint.back();
+        return at_wall(wall, random_.uniform(), off, 0, turn);
+    });
+}
+
 bool Furnisher::place_anywhere(const Blueprint& blueprint, int attempts) {
-    for (int attempt = 0; attempt < attempts; ++attempt) {
-        const double x = random_(0, world_.room[0]), y = random_(0, world_.room[1]);
-        const Pose pose{x, y, 0, random_(-pi, pi)};
-        if (!fits(blueprint, pose, floor_part, -1)) continue;
-        place(blueprint, pose, floor_part, -1, "floor");
-        return true;
-    }
-    return false;
+    return place_on_floor(blueprint, attempts, [&] {
+        return Pose{random_(0, world_.room[0]), random_(0, world_.room[1]), 0, random_(-pi, pi)};
+    });
 }
 
 bool Furnisher::place_in_plane_of_wall(const Blueprint& blueprint, std::int32_t supporter,
@@ -152,16 +149,13 @@ bool Furnisher::place_leaning(const Blueprint& blueprint) {
 bool Furnisher::place_before(std::size_t table, const Blueprint& chair) {
     const Placed at = placed_[table];
     const auto box = at.blueprint.bounds();
-    for (int attempt = 0; attempt < 40; ++attempt) {
+    return place_on_floor(chair, 40, [&] {
         const double x = random_(0.6 * box[0][0], 0.6 * box[1][0]);
         const double y = box[1][1] + random_(0.02, 0.3);
-        const Vec3 p = moved(at.pose, Vec3{x, y, 0});
-        const Pose pose{p[0], p[1], 0, at.pose.yaw + pi + random_(-0.35, 0.35)};
-        if (!fits(chair, pose, floor_part, -1)) continue;
-        place(chair, pose, floor_part, -1, "floor");
-        return true;
-    }
-    return false;
+        Pose pose = moved(at.pose, Pose{x, y, 0, pi});
+        pose.yaw += random_(-0.35, 0.35);
+        return pose;
+    });
 }
 
 std::optional<Furnisher::Spot> Furnisher::spot_on(const Placed& base, const Surface& surface,
@@ -174,8 +168,7 @@ std::optional<Furnisher::Spot> Furnisher::spot_on(const Placed& base, const Surf
         if (room_x < 0 || room_y < 0) continue;
         const double u = random_(-room_x, room_x), v = random_(-room_y, room_y);
         const Part& carrier = base.blueprint.parts[surface.part];
-        const Vec3 p = moved(base.pose, Vec3{surface.x + u, surface.y + v, carrier.top()});
-        const Pose pose{p[0], p[1], p[2], base.pose.yaw + yaw};
+        const Pose pose = moved(base.pose, Pose{surface.x + u, surface.y + v, carrier.top(), yaw});
         if (!free(pose)) continue;
         return Spot{pose, std::min(surface.half_x - std::abs(u), surface.half_y - std::abs(v))};
     }

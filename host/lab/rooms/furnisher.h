@@ -64,6 +64,7 @@ class Furnisher : public RoomMaker {
     void tilt(double degrees);
 
   private:
+    bool place_on_floor(const Blueprint& blueprint, int attempts, const std::function<Pose()>& any);
     bool place_in_plane_of_wall(const Blueprint& blueprint, std::int32_t supporter,
                                 const std::function<double()>& height);
     bool is_kept_free(const Bounds& box) const;

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "lab/rooms/goods.h"
 
-#include <algorithm>
 #include <numbers>
-#include <vector>
 
 namespace topple::scenes {
-namespace {
-
-using std::numbers::pi;
-
-}  // namespace
-
 void load_pallet(Composer& room, std::size_t index) {
     Random& random = room.random();
     const Composer::Placed at = room.placed()[index];
@@ -38,12 +30,11 @@ void load_pallet(Composer& room, std::size_t index) {
                 carrier = -1;
                 continue;
             }
-            Blueprint carton("carton");
-            carton.foot(carton.box("box", 0, 0, 0, size));
-            const Vec3 p = moved(at.pose, Vec3{x, y, 0});
             const auto on = layer == 0 ? planks : std::vector<std::int32_t>{carrier};
-            const Pose pose{p[0], p[1], top + layer * h, at.pose.yaw};
-            carrier = room.stand(carton, pose, on, "pallet") ? room.placed().back().first_part : -1;
+            const Pose pose = moved(at.pose, Pose{x, y, top + layer * h});
+            carrier = room.stand(lone_box("carton", "box", size), pose, on, "pallet")
+                          ? room.placed().back().first_part
+                          : -1;
         }
     }
     if (flush) room.stand(load, {at.pose.x, at.pose.y, top, at.pose.yaw}, planks, "pallet");
@@ -59,7 +50,8 @@ void aisles(Composer& room, double aisle, Blueprint (*make)(Random&), double clu
             const Blueprint one = make(random);
             const auto box = one.bounds();
             if (x + box[1][0] - box[0][0] > size[0] - aisle) break;
-            if (room.stand(one, {x - box[0][0], y, 0, random.chance(0.9) ? 0 : pi}, {0}, "floor"))
+            if (room.stand(one, {x - box[0][0], y, 0, random.chance(0.9) ? 0 : std::numbers::pi},
+                           {0}, "floor"))
                 room.fill(room.placed().size() - 1, clutter, goods);
             x += box[1][0] - box[0][0] + (random.chance(0.6) ? 0.001 : random(0.3, 1.2));
         }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <numbers>
-#include <utility>
 
 #include "lab/furniture/things.h"
 #include "lab/furniture/varied.h"
@@ -24,10 +23,9 @@ void shelve_books(Composer& room, std::size_t index, const BookcaseMake& make) {
         const double out = random.chance(0.5) ? -1 : 1;
         const bool behind = make.two_sided && s.y < 0;
         const Part& board = at.blueprint.parts[s.part];
-        const Vec3 p =
-            moved(at.pose, Vec3{s.x + out * (s.half_x - length / 2 - 0.001), s.y, board.top()});
-        room.stand(books, {p[0], p[1], p[2], at.pose.yaw + (behind ? pi : 0)},
-                   {at.first_part + s.part}, "shelf");
+        const Pose pose{s.x + out * (s.half_x - length / 2 - 0.001), s.y, board.top(),
+                        behind ? pi : 0};
+        room.stand(books, moved(at.pose, pose), {at.first_part + s.part}, "shelf");
     }
 }
 
@@ -85,13 +83,12 @@ void place_tables(Composer& room) {
             room.before(table, random.integer(0, 3), chair);
         room.fill(table, show ? 7 : 2, reading);
     }
-    if (random.chance(0.7)) {
-        if (random.chance(0.5) ? room.anywhere(make_service_desk(random))
-                               : room.along_wall(make_service_desk(random))) {
-            const std::size_t desk = room.last();
-            room.before(desk, 0, make_office_chair(random));
-            room.fill(desk, 4, make_desk_item);
-        }
+    if (!random.chance(0.7)) return;
+    if (random.chance(0.5) ? room.anywhere(make_service_desk(random))
+                           : room.along_wall(make_service_desk(random))) {
+        const std::size_t desk = room.last();
+        room.before(desk, 0, make_office_chair(random));
+        room.fill(desk, 4, make_desk_item);
     }
 }
 

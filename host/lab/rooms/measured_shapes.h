@@ -5,19 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "lab/solids/scene.h"
+#include "lab/furniture/blueprint.h"
 #include "topple/input.h"
 
 // Single things whose mass and barrier are known exactly, in an otherwise empty corner of a room.
 namespace topple::scenes {
 
 // A thing about its own origin, the middle of its underside; its parts touch and don't overlap.
-struct MeasuredShape {
-    std::string name;
-    std::vector<Part> parts;
+struct MeasuredShape : Blueprint {
     bool on_table = false;
 };
-
 // From 6 cm to 1.8 m: boxes, cylinders, cones, bottles, angles, tables, chairs and lamps.
 std::vector<MeasuredShape> measured_shapes();
 

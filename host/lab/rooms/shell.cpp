@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "lab/rooms/composer.h"
 

@@ -6,11 +6,10 @@
 #include <set>
 #include <string>
 #include <system_error>
-#include <utility>
 
+#include "core/thread_pool.h"
 #include "io/file_writer.h"
 #include "io/replace_file.h"
-#include "lab/parallel.h"
 #include "lab/rooms/building.h"
 #include "lab/scan/room_scan.h"
 #include "lab/solids/ground_truth.h"
@@ -181,25 +180,20 @@ class CloudWriter {
 
     void write_block(const Building::Room& room, const RoomScan& scan, std::uint64_t first_object) {
         vertices_.resize(starts_.back());
-        const auto fill = [&](std::size_t first, std::size_t last) {
-            std::vector<Vec3> places;
-            for (std::size_t n = first; n < last; ++n) {
-                const std::size_t patch = first_patch_ + n;
-                places.resize(starts_[n + 1] - starts_[n]);
-                if (places.empty()) continue;
-                scan.sample(patch, options_.noise_m,
-                            Random(options_.seed, noise_stream + (room.id << 32) + patch), places);
-                const std::int32_t object = scan.object(patch);
-                const auto id =
-                    object == 0 ? 0 : static_cast<std::int32_t>(first_object) + object - 1;
-                for (std::size_t k = 0; k < places.size(); ++k) {
-                    const Vec3 p = shifted(room.origin, places[k]);
-                    vertices_[starts_[n] + k] = {static_cast<float>(p[0]), static_cast<float>(p[1]),
-                                                 static_cast<float>(p[2]), id};
-                }
+        ThreadPool(options_.threads).each(starts_.size() - 1, 64, [&](std::size_t n) {
+            const std::size_t patch = first_patch_ + n;
+            std::vector<Vec3> places(starts_[n + 1] - starts_[n]);
+            if (places.empty()) return;
+            scan.sample(patch, options_.noise_m,
+                        Random(options_.seed, noise_stream + (room.id << 32) + patch), places);
+            const std::int32_t object = scan.object(patch);
+            const auto id = object == 0 ? 0 : static_cast<std::int32_t>(first_object) + object - 1;
+            for (std::size_t k = 0; k < places.size(); ++k) {
+                const Vec3 p = shifted(room.origin, places[k]);
+                vertices_[starts_[n] + k] = {static_cast<float>(p[0]), static_cast<float>(p[1]),
+                                             static_cast<float>(p[2]), id};
             }
-        };
-        in_parallel(starts_.size() - 1, fill, options_.threads);
+        });
         out_.write(vertices_.data(), vertices_.size() * sizeof(Vertex));
     }
 

@@ -25,15 +25,6 @@ Vec3 unit(const Vec3& v) {
     return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-struct Ray {
-    Vec3 direction;  // unit, room frame
-    double z_share;  // its component along the camera's axis
-};
-Ray ray_through(const Intrinsics& k, const Mat4& pose, double u, double v) {
-    const Vec3 d = unit({(u - k.cx) / k.fx, (v - k.cy) / k.fy, 1});
-    return {turned(pose, d), d[2]};
-}
-
 double noisy(double z, double cosine, const CameraOptions& o, Random& random) {
     const double angle = std::acos(std::clamp(cosine, 0.0, 1.0));
     if (angle > o.grazing_deg * pi / 180) return 0;
@@ -54,24 +45,9 @@ void drop_edges(const Intrinsics& k, const std::vector<double>& z,
             for (const auto& [du, dv] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
                 const std::int64_t a = u + du, b = v + dv;
                 if (a < 0 || b < 0 || a >= w || b >= h) continue;
-                if (!(std::abs(z[b * w + a] - here) < limit)) {
-                    depth[v * w + u] = 0;
-                }
+                if (!(std::abs(z[b * w + a] - here) < limit)) depth[v * w + u] = 0;
             }
         }
-    }
-}
-
-void check(const CameraOptions& o) {
-    const Intrinsics& k = o.intrinsics;
-    const bool usable = k.width > 0 && k.height > 0 && k.width <= 8192 && k.height <= 8192 &&
-                        k.fx > 0 && k.fy > 0 && k.depth_scale > 0 && o.frames > 0 &&
-                        o.frames <= 9999 && o.fuse_m > 1e-4 && o.min_range_m > 0 &&
-                        o.max_range_m > o.min_range_m;
-    if (!usable) {
-        throw Error(ErrorKind::usage,
-                    "camera: needs 1 to 8192 pixels a side, positive focal lengths, 1 to 9999 "
-                    "frames, a range above 0 and cells above 0.1 mm");
     }
 }
 
@@ -114,15 +90,6 @@ Mat4 single_pose(const World& world) {
     return best;
 }
 
-Mat4 to_input(const World& world, const Mat4& pose) {
-    Mat4 out = identity;
-    for (std::size_t column = 0; column < 4; ++column) {
-        const Vec3 v = world.to_input({pose[column], pose[4 + column], pose[8 + column]});
-        for (std::size_t row = 0; row < 3; ++row) out[4 * row + column] = v[row];
-    }
-    return out;
-}
-
 }  // namespace
 
 Mat4 look_at(const Vec3& eye, const Vec3& target) {
@@ -150,16 +117,16 @@ std::vector<std::int16_t> render(const World& world, const CameraOptions& option
             u += std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
             v += std::clamp(options.lateral_px * random.normal(), -1.5, 1.5);
         }
-        const Ray ray = ray_through(k, camera_to_room, u, v);
-        const RayCaster::Hit hit = caster.cast(eye, ray.direction);
+        const Vec3 of_camera = unit({(u - k.cx) / k.fx, (v - k.cy) / k.fy, 1});
+        const Vec3 d = turned(camera_to_room, of_camera);
+        const RayCaster::Hit hit = caster.cast(eye, d);
         if (hit.part < 0) continue;
         part[at] = static_cast<std::int16_t>(hit.part);
-        double z = hit.distance * ray.z_share;
+        double z = hit.distance * of_camera[2];
         exact[at] = z;
         if (options.noise) {
-            const Vec3 normal =
-                world.parts[hit.part].normal(along(eye, hit.distance, ray.direction));
-            z = noisy(z, std::abs(dot(normal, ray.direction)), options, random);
+            const Vec3 normal = world.parts[hit.part].normal(along(eye, hit.distance, d));
+            z = noisy(z, std::abs(dot(normal, d)), options, random);
         }
         const double stored = std::round(z * k.depth_scale);
         if (z >= options.min_range_m && z <= options.max_range_m && stored < 65535.5)
@@ -173,26 +140,24 @@ std::vector<std::int16_t> render(const World& world, const CameraOptions& option
 }
 
 Sequence film(const World& world, const CameraOptions& options, std::span<const Mat4> poses) {
-    check(options);
     if (world.parts.size() > 32767) {
         throw Error(ErrorKind::usage, "camera: the scene has more than 32767 parts");
     }
-    const auto count = static_cast<unsigned>(poses.size());
     Sequence sequence;
     sequence.intrinsics = options.intrinsics;
-    sequence.frames.resize(count);
-    sequence.part.resize(count);
-    ThreadPool(options.threads).each(count, 1, [&](std::size_t n) {
-        const auto number = static_cast<unsigned>(n);
-        sequence.part[n] = render(world, options, poses[n], number + 1, sequence.frames[n].depth);
-        sequence.frames[n].camera_to_world = to_input(world, poses[n]);
+    sequence.frames.resize(poses.size());
+    sequence.part.resize(poses.size());
+    ThreadPool(options.threads).each(poses.size(), 1, [&](std::size_t n) {
+        sequence.part[n] = render(world, options, poses[n], n + 1, sequence.frames[n].depth);
+        sequence.frames[n].camera_to_world = product(rigid(world.tilt, {}), poses[n]);
     });
     fuse(options, sequence);
     return sequence;
 }
 
 Sequence walk(const World& world, const CameraOptions& options) {
-    check(options);
+    if (options.frames < 1 || options.frames > 9999)
+        throw Error(ErrorKind::usage, "camera: takes 1 to 9999 frames");
     Random random(options.seed, 1);
     std::vector<Mat4> poses;
     for (unsigned n = 0; n < (options.single ? 1 : options.frames); ++n) {

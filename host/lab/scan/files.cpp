@@ -3,6 +3,7 @@
 
 #include <png.h>
 
+#include <Eigen/Geometry>
 #include <csetjmp>
 #include <cstdio>
 #include <iomanip>
@@ -54,31 +55,14 @@ void write_png(const std::filesystem::path& path, const Image& image) {
     }
 }
 
-// The quaternion x y z w of a rotation, by its largest component.
-std::array<double, 4> quaternion(const Mat4& m) {
-    const double trace = m[0] + m[5] + m[10];
-    if (trace > 0) {
-        const double s = 2 * std::sqrt(trace + 1);
-        return {(m[9] - m[6]) / s, (m[2] - m[8]) / s, (m[4] - m[1]) / s, s / 4};
-    }
-    if (m[0] >= m[5] && m[0] >= m[10]) {
-        const double s = 2 * std::sqrt(1 + m[0] - m[5] - m[10]);
-        return {s / 4, (m[1] + m[4]) / s, (m[2] + m[8]) / s, (m[9] - m[6]) / s};
-    }
-    if (m[5] >= m[10]) {
-        const double s = 2 * std::sqrt(1 + m[5] - m[0] - m[10]);
-        return {(m[1] + m[4]) / s, s / 4, (m[6] + m[9]) / s, (m[2] - m[8]) / s};
-    }
-    const double s = 2 * std::sqrt(1 + m[10] - m[0] - m[5]);
-    return {(m[2] + m[8]) / s, (m[6] + m[9]) / s, s / 4, (m[4] - m[1]) / s};
-}
-
 // The line of trajectory.txt for a pose.
 std::string trajectory_line(double time_s, const Mat4& pose) {
     std::ostringstream line;
     line << std::fixed << std::setprecision(9);
     line << time_s << ' ' << pose[3] << ' ' << pose[7] << ' ' << pose[11];
-    for (const double q : quaternion(pose)) line << ' ' << q;
+    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(pose.data());
+    const Eigen::Quaterniond turn(matrix.topLeftCorner<3, 3>());
+    for (const double q : turn.coeffs()) line << ' ' << q;
     line << '\n';
     return line.str();
 }
@@ -102,10 +86,6 @@ void write_colour_png(const std::filesystem::path& path, std::uint32_t width,
                       const std::vector<std::array<std::uint8_t, 3>>& colour) {
     write_png(path, {width, static_cast<std::uint32_t>(colour.size() / width), 8,
                      PNG_COLOR_TYPE_RGB, colour.front().data(), std::size_t{width} * 3});
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-    io::write_file(path, text);
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -134,16 +114,16 @@ void write_frames(const std::filesystem::path& folder, const Intrinsics& k,
         if (!colour.empty()) write_colour_png(folder / "color" / name.str(), k.width, colour[n]);
         poses += trajectory_line(static_cast<double>(n) / frames_per_s, frames[n].camera_to_world);
     }
-    if (frames.size() > 1) write_text(folder / "trajectory.txt", poses);
-    write_text(folder / "intrinsics.json", intrinsics_text(k));
+    if (frames.size() > 1) io::write_file(folder / "trajectory.txt", poses);
+    io::write_file(folder / "intrinsics.json", intrinsics_text(k));
 }
 
 void write_ply(const std::filesystem::path& path, std::size_t count, const std::string& properties,
                const std::string& bytes) {
-    write_text(path, "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                         std::to_string(count) +
-                         "\nproperty float x\nproperty float y\nproperty float z\n" + properties +
-                         "end_header\n" + bytes);
+    io::write_file(path, "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                             std::to_string(count) +
+                             "\nproperty float x\nproperty float y\nproperty float z\n" +
+                             properties + "end_header\n" + bytes);
 }
 
 void append_place(std::string& bytes, float x, float y, float z) {

@@ -19,7 +19,6 @@ void write_depth_png(const std::filesystem::path& path, std::uint32_t width,
 // 8 bit of red, green and blue.
 void write_colour_png(const std::filesystem::path& path, std::uint32_t width,
                       const std::vector<std::array<std::uint8_t, 3>>& colour);
-void write_text(const std::filesystem::path& path, const std::string& text);
 void make_folder(const std::filesystem::path& folder);
 
 // What `topple generate` makes, a scan with its truth.

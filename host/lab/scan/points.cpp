@@ -15,26 +15,6 @@ std::uint64_t cell_of(double x, double edge) {
     return static_cast<std::uint64_t>(std::clamp(cell, 1.0, static_cast<double>(axis_cells - 2)));
 }
 
-std::uint64_t cube(const Vec3& p, double edge) {
-    return (cell_of(p[0], edge) * axis_cells + cell_of(p[1], edge)) * axis_cells +
-           cell_of(p[2], edge);
-}
-
-struct Keyed {
-    std::uint64_t key;
-    std::uint32_t at;
-    bool operator<(const Keyed& o) const { return key != o.key ? key < o.key : at < o.at; }
-};
-
-template <class Point>
-std::vector<Keyed> by_cube(const std::vector<Point>& points, double edge) {
-    std::vector<Keyed> order(points.size());
-    for (std::size_t n = 0; n < points.size(); ++n)
-        order[n] = {cube(points[n].at, edge), static_cast<std::uint32_t>(n)};
-    std::sort(order.begin(), order.end());
-    return order;
-}
-
 // use(index, squared distance) for each point within `radius`, by its cubes of that edge.
 template <class Point, class Use>
 void for_each_near(const std::vector<Point>& points, const std::vector<Keyed>& order,
@@ -79,16 +59,20 @@ struct Sum {
 
 }  // namespace
 
+std::uint64_t cube(const Vec3& p, double edge) {
+    return (cell_of(p[0], edge) * axis_cells + cell_of(p[1], edge)) * axis_cells +
+           cell_of(p[2], edge);
+}
+
 std::vector<ColouredPoint> fused(const std::vector<ColouredPoint>& points, double edge,
                                  std::uint32_t least) {
-    const auto order = by_cube(points, edge);
     std::vector<ColouredPoint> out;
-    for (std::size_t n = 0; n < order.size();) {
+    for_each_cube(points, edge, [&](std::span<const Keyed> cube) {
+        if (cube.size() < least) return;
         Sum sum;
-        const std::uint64_t key = order[n].key;
-        for (; n < order.size() && order[n].key == key; ++n) sum.add(points[order[n].at]);
-        if (sum.count >= least) out.push_back(sum.mean());
-    }
+        for (const Keyed& one : cube) sum.add(points[one.at]);
+        out.push_back(sum.mean());
+    });
     return out;
 }
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <tuple>
 
+#include "core/thread_pool.h"
 #include "core/vectors.h"
-#include "lab/parallel.h"
 
 namespace topple::scenes {
 namespace {
@@ -60,25 +60,17 @@ RoomScan::RoomScan(const World& world, const std::vector<Vec3>& stations, unsign
     // Pieces of the patches in their order, whoever works on them.
     constexpr std::size_t piece = 1024;
     std::vector<std::vector<Seen>> found((patches.size() + piece - 1) / piece);
-    in_parallel(
-        found.size(),
-        [&](std::size_t first, std::size_t last) {
-            std::vector<std::size_t> blockers(stations_.size(), 0);
-            for (std::size_t n = first; n < last; ++n) {
-                const std::size_t end = std::min(patches.size(), (n + 1) * piece);
-                for (std::size_t k = n * piece; k < end; ++k)
-                    look(patches[k], 0, blockers, found[n]);
-            }
-        },
-        threads);
+    ThreadPool(threads).each(found.size(), 1, [&](std::size_t n) {
+        std::vector<std::size_t> blockers(stations_.size(), 0);
+        const std::size_t end = std::min(patches.size(), (n + 1) * piece);
+        for (std::size_t k = n * piece; k < end; ++k) look(patches[k], 0, blockers, found[n]);
+    });
     for (auto& list : found) {
         seen_.insert(seen_.end(), list.begin(), list.end());
         list = {};
     }
-    std::stable_sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
-        if (a.station != b.station) return a.station < b.station;
-        if (a.column != b.column) return a.column < b.column;
-        return a.slope < b.slope;
+    std::ranges::stable_sort(seen_, {}, [](const Seen& seen) {
+        return std::tuple(seen.station, seen.column, seen.slope);
     });
 }
 
@@ -168,14 +160,11 @@ void RoomScan::look(const Patch& patch, int depth, std::vector<std::size_t>& las
     one.patch = patch;
     one.area = patch.area(sheet);
     if (!(one.area > 0)) return;
-    const Sheet::Place middle =
-        sheet.at((patch.u[0] + patch.u[1]) / 2, (patch.v[0] + patch.v[1]) / 2);
+    const Sheet::Place middle = patch.middle(sheet);
     double radius = 0;
     for (const double u : patch.u) {
-        for (const double v : patch.v) {
-            const Vec3 way = minus(sheet.at(u, v).point, middle.point);
-            radius = std::max(radius, length(way));
-        }
+        for (const double v : patch.v)
+            radius = std::max(radius, length(minus(sheet.at(u, v).point, middle.point)));
     }
     switch (room_at(middle.point, radius, sheet.part)) {
         case Room::none:
@@ -211,10 +200,7 @@ void RoomScan::sample(std::size_t patch, double noise_m, Random random,
              ++attempt) {
             // The middle was found to be clear.
             point = attempt < 8 ? seen.patch.spread(sheet, random.uniform(), random.uniform()).point
-                                : sheet
-                                      .at((seen.patch.u[0] + seen.patch.u[1]) / 2,
-                                          (seen.patch.v[0] + seen.patch.v[1]) / 2)
-                                      .point;
+                                : seen.patch.middle(sheet).point;
             if (attempt == 8) break;
         }
         const Vec3 way = minus(point, station);

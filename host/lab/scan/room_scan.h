@@ -16,7 +16,7 @@ namespace topple::scenes {
 class RoomScan {
   public:
     // Stations in the room's frame, at most 255, none within a solid. `world` must outlive this.
-    // `threads` as in in_parallel().
+    // `threads` as in ThreadPool.
     RoomScan(const World& world, const std::vector<Vec3>& stations, unsigned threads);
 
     // In the order in which the scanner sweeps: station by station, turning from column to column.

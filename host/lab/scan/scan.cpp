@@ -43,12 +43,6 @@ Light any_light(Random& random) {
             random(0.8, 1.1)};
 }
 
-// Of a reading of z metres, in the camera's frame.
-Vec3 place_of(const Intrinsics& k, std::size_t pixel, double z) {
-    const double u = static_cast<double>(pixel % k.width), v = static_cast<double>(pixel / k.width);
-    return {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z};
-}
-
 struct Shot {
     ExactView view;
     std::vector<float> depth;
@@ -192,9 +186,8 @@ class Scanner {
     void single() {
         const bool large = random_.chance(0.5);
         const double focal = random_(0.82, 0.95);
-        scan_.intrinsics = large
-                               ? Intrinsics{640, 480, 640 * focal, 640 * focal, 319.5, 239.5, 1000}
-                               : Intrinsics{320, 240, 320 * focal, 320 * focal, 159.5, 119.5, 1000};
+        const unsigned w = large ? 640 : 320, h = large ? 480 : 240;
+        scan_.intrinsics = {w, h, w * focal, w * focal, w / 2 - 0.5, h / 2 - 0.5, 1000};
         const Mat4 pose = best_view(world_, caster_, random_);
         scan_.world_to_scan = inverse(pose);
         shoot({pose}, scan_.intrinsics, any_sensor(scan_.intrinsics, random_),

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/file_writer.h"
 #include "lab/scan/files.h"
 #include "lab/scan/scan.h"
 
@@ -137,7 +138,7 @@ void write_scan(const std::filesystem::path& folder, const World& world, const S
                                {"world_to_scan", rows},
                                {"box_frame", "world"},
                                {"objects", objects_json(world, scan)}};
-    write_text(folder / "truth.json", truth.dump(1) + "\n");
+    io::write_file(folder / "truth.json", truth.dump(1) + "\n");
 }
 
 }  // namespace topple::scenes

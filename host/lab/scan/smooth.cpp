@@ -46,16 +46,6 @@ void smooth_line(float* values, std::size_t count, std::size_t step,
 
 }  // namespace
 
-void smooth_image(std::vector<float>& image, std::size_t width, double sigma) {
-    const auto weights = gaussian(sigma);
-    const std::size_t height = image.size() / width;
-    std::vector<float> line;
-    for (std::size_t v = 0; v < height; ++v)
-        smooth_line(image.data() + v * width, width, 1, weights, line);
-    for (std::size_t u = 0; u < width; ++u)
-        smooth_line(image.data() + u, height, width, weights, line);
-}
-
 std::vector<double> smooth_noise(std::size_t count, double sigma, double size, Random& random) {
     std::vector<float> noise(count);
     for (float& n : noise) n = static_cast<float>(random.normal());
@@ -71,8 +61,14 @@ std::vector<float> smooth_noise_image(std::size_t width, std::size_t height, dou
                                       double size, Random& random) {
     std::vector<float> noise(width * height);
     for (float& n : noise) n = static_cast<float>(random.normal());
-    smooth_image(noise, width, sigma);
-    const double kept = left(gaussian(sigma));
+    // Along rows and columns; beyond its border the image is continued by its edge.
+    const auto weights = gaussian(sigma);
+    std::vector<float> line;
+    for (std::size_t v = 0; v < height; ++v)
+        smooth_line(noise.data() + v * width, width, 1, weights, line);
+    for (std::size_t u = 0; u < width; ++u)
+        smooth_line(noise.data() + u, height, width, weights, line);
+    const double kept = left(weights);
     for (float& n : noise) n *= static_cast<float>(size / (kept * kept));
     return noise;
 }

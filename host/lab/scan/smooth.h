@@ -8,10 +8,6 @@
 
 namespace topple::scenes {
 
-// Convolves an image of `width` columns with a Gaussian of this standard deviation in pixels;
-// beyond its border it is continued by its edge.
-void smooth_image(std::vector<float>& image, std::size_t width, double sigma);
-
 // Normally distributed numbers smoothed with a Gaussian of `sigma` samples, then scaled to the
 // standard deviation `size`.
 std::vector<double> smooth_noise(std::size_t count, double sigma, double size, Random& random);

@@ -31,14 +31,10 @@ PartView view_parts(std::size_t parts, std::span<const std::int32_t> label,
     PartView view;
     for (std::size_t k = 0; k < parts; ++k) {
         view.seen.push_back(points[k] >= seen_points);
+        const auto most =
+            std::ranges::max_element(votes[k], {}, [](const auto& vote) { return vote.second; });
         view.object.emplace_back();
-        std::uint64_t most = 0;
-        for (const auto& [o, count] : votes[k]) {
-            if (count > most) {
-                most = count;
-                view.object[k] = o;
-            }
-        }
+        if (most != votes[k].end()) view.object[k] = most->first;
     }
     return view;
 }

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "lab/parallel.h"
+#include "core/thread_pool.h"
 #include "lab/solids/ray_caster.h"
 #include "topple/error.h"
 
@@ -33,17 +33,15 @@ void check(const Scene& parse) {
 std::vector<std::int32_t> true_parts(const World& truth, const ScenePoints& points) {
     const RayCaster parts(truth.parts);
     std::vector<std::int32_t> label(points.x.size(), -1);
-    in_parallel(label.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n) {
-            const Vec3 p = truth.to_room({points.x[n], points.y[n], points.z[n]});
-            double best = nearest_m;
-            parts.each_near(p, nearest_m, [&](std::int32_t part, double distance) {
-                const double d = std::abs(distance);
-                if (d > best || d >= nearest_m || (d == best && part > label[n])) return;
-                best = d;
-                label[n] = part;
-            });
-        }
+    ThreadPool(0).each(label.size(), 256, [&](std::size_t n) {
+        const Vec3 p = truth.to_room({points.x[n], points.y[n], points.z[n]});
+        double best = nearest_m;
+        parts.each_near(p, nearest_m, [&](std::int32_t part, double distance) {
+            const double d = std::abs(distance);
+            if (d > best || d >= nearest_m || (d == best && part > label[n])) return;
+            best = d;
+            label[n] = part;
+        });
     });
     return label;
 }

@@ -15,8 +15,6 @@ struct SegmentationScore {
     double false_alarm = 0;      // share of points outside of their predicted segment's best match
     double cut_discrepancy = 0;  // see below
     double miou = 0;             // best intersection over union of each true segment, all alike
-    double weighted_iou = 0;     // the same, weighted by points
-    std::uint64_t segments = 0;
 };
 
 // All but the cut discrepancy, which needs to know where the points are. Throws Error(usage) for

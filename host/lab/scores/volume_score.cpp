@@ -6,10 +6,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
-#include "lab/parallel.h"
+#include "core/thread_pool.h"
 #include "lab/solids/ray_caster.h"
 
 namespace topple::scenes {
@@ -22,68 +21,59 @@ Vec3 center_of(const World& truth, const SolidVoxels& solid, std::size_t n) {
 }
 
 Share precision(const std::vector<Verdict>& verdict) {
-    std::uint64_t right = 0, used = 0;
-    for (const Verdict v : verdict) {
-        used += v != Verdict::not_judged;
-        right += v == Verdict::right;
-    }
-    return share(right, used);
+    const auto of = [&](Verdict v) {
+        return static_cast<std::uint64_t>(std::ranges::count(verdict, v));
+    };
+    return share(of(Verdict::right), of(Verdict::right) + of(Verdict::wrong));
 }
 
-// The cells of size h that hold voxels' centres, each packed into one word, 21 bits per axis.
-class Occupied {
-  public:
-    Occupied(const World& truth, const SolidVoxels& solid, double h) {
-        for (std::size_t n = 0; n < solid.x.size(); ++n) {
-            const Vec3 p = center_of(truth, solid, n);
-            cells_.push_back(packed(std::llround(std::floor(p[0] / h)),
-                                    std::llround(std::floor(p[1] / h)),
-                                    std::llround(std::floor(p[2] / h))));
+using Cell = std::array<std::int32_t, 3>;
+
+// The cells of size h that hold voxels' centres, sorted.
+std::vector<Cell> occupied_cells(const World& truth, const SolidVoxels& solid, double h) {
+    std::vector<Cell> cells(solid.x.size());
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const Vec3 p = center_of(truth, solid, n);
+        for (std::size_t a = 0; a < 3; ++a)
+            cells[n][a] = static_cast<std::int32_t>(std::floor(p[a] / h));
+    }
+    std::ranges::sort(cells);
+    return cells;
+}
+
+// Whether the cell or one of its six neighbours is among them.
+bool is_near(const std::vector<Cell>& cells, const Cell& cell) {
+    if (std::ranges::binary_search(cells, cell)) return true;
+    for (std::size_t a = 0; a < 3; ++a) {
+        for (const std::int32_t step : {1, -1}) {
+            Cell beside = cell;
+            beside[a] += step;
+            if (std::ranges::binary_search(cells, beside)) return true;
         }
-        std::sort(cells_.begin(), cells_.end());
     }
-    // The cell or one of its six neighbours.
-    bool near(std::int64_t i, std::int64_t j, std::int64_t k) const {
-        return has(i, j, k) || has(i + 1, j, k) || has(i - 1, j, k) || has(i, j + 1, k) ||
-               has(i, j - 1, k) || has(i, j, k + 1) || has(i, j, k - 1);
-    }
-
-  private:
-    static std::uint64_t packed(std::int64_t i, std::int64_t j, std::int64_t k) {
-        constexpr std::int64_t half = 1 << 20;
-        const auto bits = [](std::int64_t v) {
-            return static_cast<std::uint64_t>(std::clamp(v + half, std::int64_t{0}, 2 * half - 1));
-        };
-        return bits(i) << 42 | bits(j) << 21 | bits(k);
-    }
-    bool has(std::int64_t i, std::int64_t j, std::int64_t k) const {
-        return std::binary_search(cells_.begin(), cells_.end(), packed(i, j, k));
-    }
-
-    std::vector<std::uint64_t> cells_;
-};
+    return false;
+}
 
 struct Count {
     std::uint64_t hits = 0, of = 0;
 };
 
-Count found(const Part& part, const Occupied& occupied, double h, const Domain& domain) {
+Count found(const Part& part, const std::vector<Cell>& occupied, double h, const Domain& domain) {
     const auto box = part.bounds();
     const Part::Heading heading = part.heading();
-    std::array<std::int64_t, 3> low{}, high{};
+    Cell low{}, high{};
     for (std::size_t a = 0; a < 3; ++a) {
-        low[a] = std::llround(std::floor(box[0][a] / h)) - 1;
-        high[a] = std::llround(std::ceil(box[1][a] / h)) + 1;
+        low[a] = static_cast<std::int32_t>(std::floor(box[0][a] / h)) - 1;
+        high[a] = static_cast<std::int32_t>(std::ceil(box[1][a] / h)) + 1;
     }
-    const auto mid = [&](std::int64_t v) { return (static_cast<double>(v) + 0.5) * h; };
     Count count;
-    for (std::int64_t i = low[0]; i < high[0]; ++i) {
-        for (std::int64_t j = low[1]; j < high[1]; ++j) {
-            for (std::int64_t k = low[2]; k < high[2]; ++k) {
-                const Vec3 p{mid(i), mid(j), mid(k)};
+    for (std::int32_t i = low[0]; i < high[0]; ++i) {
+        for (std::int32_t j = low[1]; j < high[1]; ++j) {
+            for (std::int32_t k = low[2]; k < high[2]; ++k) {
+                const Vec3 p{(i + 0.5) * h, (j + 0.5) * h, (k + 0.5) * h};
                 if (!(part.distance(p, heading) < -0.25 * h) || (domain && !domain(p))) continue;
                 count.of++;
-                count.hits += occupied.near(i, j, k);
+                count.hits += is_near(occupied, {i, j, k});
             }
         }
     }
@@ -91,12 +81,10 @@ Count found(const Part& part, const Occupied& occupied, double h, const Domain& 
 }
 
 Share recall(const World& truth, const SolidVoxels& solid, double h, const Domain& domain) {
-    const Occupied occupied(truth, solid, h);
+    const std::vector<Cell> occupied = occupied_cells(truth, solid, h);
     std::vector<Count> counts(truth.parts.size());
-    in_parallel(truth.parts.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n) {
-            if (truth.parts[n].object != 0) counts[n] = found(truth.parts[n], occupied, h, domain);
-        }
+    ThreadPool(0).each(counts.size(), 1, [&](std::size_t n) {
+        if (truth.parts[n].object != 0) counts[n] = found(truth.parts[n], occupied, h, domain);
     });
     Count all;
     for (const Count& c : counts) {
@@ -112,21 +100,18 @@ std::vector<Verdict> verdicts(const World& truth, const SolidVoxels& solid, doub
                               const Domain& domain) {
     const RayCaster parts(truth.parts);
     std::vector<Verdict> verdict(solid.x.size(), Verdict::not_judged);
-    in_parallel(verdict.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n) {
-            const Vec3 p = center_of(truth, solid, n);
-            if (domain && !domain(p)) continue;
-            bool in_room = false;
-            double near = infinity;
-            parts.each_near(p, 2 * h, [&](std::int32_t part, double d) {
-                if (truth.parts[part].object != 0)
-                    near = std::min(near, d);
-                else
-                    in_room = in_room || d < 1.5 * h;
-            });
-            if (!in_room || near < 0)
-                verdict[n] = near <= 0.87 * h ? Verdict::right : Verdict::wrong;
-        }
+    ThreadPool(0).each(verdict.size(), 256, [&](std::size_t n) {
+        const Vec3 p = center_of(truth, solid, n);
+        if (domain && !domain(p)) return;
+        bool in_room = false;
+        double near = infinity;
+        parts.each_near(p, 2 * h, [&](std::int32_t part, double d) {
+            if (truth.parts[part].object != 0)
+                near = std::min(near, d);
+            else
+                in_room = in_room || d < 1.5 * h;
+        });
+        if (!in_room || near < 0) verdict[n] = near <= 0.87 * h ? Verdict::right : Verdict::wrong;
     });
     return verdict;
 }

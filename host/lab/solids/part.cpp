@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <utility>
 
 #include "core/vectors.h"
 
@@ -33,22 +33,15 @@ Vec3 turn(const Part& part, const Part::Heading& h, const Vec3& v) {
             -h.lean_sine * q[1] + h.lean_cosine * q[2]};
 }
 
-// The part's x, y and z in the room's frame, as columns.
-std::array<Vec3, 3> columns(const Part::Heading& h) {
-    return {Vec3{h.cosine, -h.sine * h.lean_cosine, h.sine * h.lean_sine},
-            Vec3{h.sine, h.cosine * h.lean_cosine, -h.cosine * h.lean_sine},
-            Vec3{0, h.lean_sine, h.lean_cosine}};
+// The part's x, y and z in the room's frame.
+std::array<Vec3, 3> own_axes(const Part::Heading& h) {
+    return {Vec3{h.cosine, h.sine, 0},
+            Vec3{-h.sine * h.lean_cosine, h.cosine * h.lean_cosine, h.lean_sine},
+            Vec3{h.sine * h.lean_sine, -h.cosine * h.lean_sine, h.lean_cosine}};
 }
 
 bool is_boxy(Shape shape) {
     return shape == Shape::box || shape == Shape::rounded_box || shape == Shape::lying_cylinder;
-}
-
-// Bodies of revolution about z: corners (r, z) of the outline.
-solids::Profile outline(const Part& part) {
-    if (part.shape == Shape::revolved) return part.profile;
-    const Frustum f = frustum(part);
-    return {{f.low, -f.half_height}, {f.high, f.half_height}};
 }
 
 // How far the part reaches along each axis of the room from its center: least and greatest.
@@ -57,20 +50,20 @@ Bounds reach(const Part& part) {
         const double r = part.size[0] / 2;
         return {Vec3{-r, -r, -r}, Vec3{r, r, r}};
     }
-    const auto turned = columns(part.heading());
+    const auto axes = own_axes(part.heading());
     Bounds out{};
     for (std::size_t k = 0; k < 3; ++k) {
         if (is_boxy(part.shape)) {
             const double r = part.rounding;
             double half = r;
             for (std::size_t a = 0; a < 3; ++a)
-                half += std::abs(turned[k][a]) * (part.size[a] - 2 * r) / 2;
+                half += std::abs(axes[a][k]) * (part.size[a] - 2 * r) / 2;
             out[0][k] = -half;
             out[1][k] = half;
             continue;
         }
-        const double along = turned[k][2], across = std::sqrt(std::max(0.0, 1 - along * along));
-        for (const auto& [r, z] : outline(part)) {
+        const double along = axes[2][k], across = std::sqrt(std::max(0.0, 1 - along * along));
+        for (const auto& [r, z] : part.outline()) {
             out[0][k] = std::min(out[0][k], along * z - across * r);
             out[1][k] = std::max(out[1][k], along * z + across * r);
         }
@@ -114,9 +107,7 @@ Vec3 Part::center_of_mass() const {
     } else if (shape == Shape::revolved) {
         above = solids::revolved_center_z(profile);
     }
-    const auto turned = columns(heading());
-    return {center[0] + turned[0][2] * above, center[1] + turned[1][2] * above,
-            center[2] + turned[2][2] * above};
+    return along(center, above, own_axes(heading())[2]);
 }
 
 Part::Heading Part::heading() const {
@@ -135,7 +126,7 @@ double Part::distance(const Vec3& p, const Heading& heading) const {
         case Shape::rounded_box:
             return solids::rounded_box_distance(q, size, rounding);
         case Shape::sphere:
-            return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) - size[0] / 2;
+            return length(q) - size[0] / 2;
         case Shape::revolved:
             return solids::revolved_distance(q, profile);
         default:
@@ -153,9 +144,8 @@ Vec3 Part::normal(const Vec3& p) const {
         b[k] += h;
         n[k] = distance(b, way) - distance(a, way);
     }
-    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    if (length == 0) return {0, 0, 1};
-    return {n[0] / length, n[1] / length, n[2] / length};
+    n = unit(n);
+    return n == Vec3{} ? Vec3{0, 0, 1} : n;
 }
 
 double Part::hit(const Vec3& origin, const Vec3& direction, const Heading& heading) const {
@@ -175,31 +165,28 @@ double Part::hit(const Vec3& origin, const Vec3& direction, const Heading& headi
 }
 
 std::array<Vec3, 3> Part::axes() const {
-    const auto c = columns(heading());
-    const Vec3 x{c[0][0], c[1][0], c[2][0]}, y{c[0][1], c[1][1], c[2][1]},
-        z{c[0][2], c[1][2], c[2][2]};
+    const auto [x, y, z] = own_axes(heading());
     if (shape == Shape::lying_cylinder) return {y, z, x};
     return {x, y, z};
 }
 
+solids::Profile Part::outline() const {
+    if (shape == Shape::revolved) return profile;
+    const auto [low, high, half] = frustum(*this);
+    return {{low, -half}, {high, half}};
+}
+
 double Part::bounding_radius() const {
     if (shape == Shape::sphere) return size[0] / 2;
-    if (shape == Shape::box || shape == Shape::rounded_box)
-        return std::sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]) / 2;
-    if (shape == Shape::lying_cylinder) {
-        const Frustum f = frustum(*this);
-        return std::hypot(f.low, f.half_height);
-    }
+    if (shape == Shape::box || shape == Shape::rounded_box) return length(size) / 2;
     double most = 0;
-    for (const auto& [r, z] : outline(*this)) most = std::max(most, std::hypot(r, z));
+    for (const auto& [r, z] : outline()) most = std::max(most, std::hypot(r, z));
     return most;
 }
 
 Bounds Part::bounds() const {
     auto box = reach(*this);
-    for (Vec3& corner : box) {
-        for (std::size_t k = 0; k < 3; ++k) corner[k] += center[k];
-    }
+    for (Vec3& corner : box) corner = along(corner, 1, center);
     return box;
 }
 
@@ -207,6 +194,31 @@ Part Part::hull() const {
     Part convex = *this;
     if (shape == Shape::revolved) convex.profile = solids::convex_profile(profile);
     return convex;
+}
+
+namespace {
+
+// max of two convex functions, by subgradient steps; both gradients have length 1. Steps shrink
+// geometrically, and the best value seen is kept.
+double least_common_distance(const Part& a, const Part& b, double tolerance) {
+    Vec3 p = along(a.center, 0.5, minus(b.center, a.center));
+    const double scale = a.bounding_radius() + b.bounding_radius();
+    double best = std::numeric_limits<double>::infinity();
+    for (double step = scale; step > tolerance / 4; step *= 0.97) {
+        const double da = a.distance(p), db = b.distance(p);
+        best = std::min(best, std::max(da, db));
+        const Vec3 na = a.normal(p), nb = b.normal(p);
+        // Near the tie both matter: alternating between them walks along the crease.
+        const double back = std::min(step, std::max(std::abs(da - db), step / 2));
+        p = along(p, -back, da > db ? na : nb);
+    }
+    return best;
+}
+
+}  // namespace
+
+double gap(const Part& a, const Part& b, double tolerance) {
+    return 2 * least_common_distance(a.hull(), b.hull(), tolerance);
 }
 
 }  // namespace topple::scenes

@@ -57,6 +57,9 @@ struct Part {
     double hit(const Vec3& origin, const Vec3& direction, const Heading& heading) const;
     // Its own axes as unit vectors of the room's frame; bodies of revolution turn about the third.
     std::array<Vec3, 3> axes() const;
+    // Of those: corners (r, z) about their axis, from below to above; of cones and cylinders the
+    // rims alone.
+    solids::Profile outline() const;
     double bounding_radius() const;  // about center
     Bounds bounds() const;           // axis-aligned in the room's frame: lowest, highest corner
     double bottom() const { return bounds()[0][2]; }

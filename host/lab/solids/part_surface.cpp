@@ -10,12 +10,6 @@ namespace {
 
 using std::numbers::pi;
 
-Vec3 combined(const Vec3& origin, const std::array<Vec3, 3>& axes, double a, double b, double c) {
-    Vec3 out = origin;
-    for (std::size_t k = 0; k < 3; ++k) out[k] += a * axes[0][k] + b * axes[1][k] + c * axes[2][k];
-    return out;
-}
-
 // Adds sheets of one part in its own frame.
 class Builder {
   public:
@@ -109,6 +103,12 @@ class Builder {
 
 }  // namespace
 
+Vec3 combined(const Vec3& origin, const std::array<Vec3, 3>& axes, double a, double b, double c) {
+    Vec3 out = origin;
+    for (std::size_t k = 0; k < 3; ++k) out[k] += a * axes[0][k] + b * axes[1][k] + c * axes[2][k];
+    return out;
+}
+
 Sheet::Place Sheet::at(double u_value, double v_value) const {
     constexpr Vec3 zero{};
     if (kind == Kind::flat) return {combined(origin, axes, u_value, v_value, 0), axes[2]};
@@ -173,19 +173,12 @@ void add_sheets(const Part& part, std::int32_t id, std::vector<Sheet>& sheets) {
         }
         case Shape::sphere:
             return builder.sphere(half[0]);
-        case Shape::cylinder:
-            return builder.swept(
-                {{0, -half[2]}, {half[0], -half[2]}, {half[0], half[2]}, {0, half[2]}});
-        case Shape::lying_cylinder:
-            return builder.swept(
-                {{0, -half[0]}, {half[1], -half[0]}, {half[1], half[0]}, {0, half[0]}});
-        case Shape::cone:
-            return builder.swept({{0, -half[2]},
-                                  {half[0], -half[2]},
-                                  {half[0] * part.top_ratio, half[2]},
-                                  {0, half[2]}});
         case Shape::revolved:
             return builder.swept(part.profile);
+        default: {
+            const auto rims = part.outline();
+            return builder.swept({{0, rims[0][1]}, rims[0], rims[1], {0, rims[1][1]}});
+        }
     }
 }
 

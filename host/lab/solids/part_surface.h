@@ -11,6 +11,9 @@
 // spread over evenly. Room frame, metres and radians.
 namespace topple::scenes {
 
+// The place that is so far from an origin along three axes.
+Vec3 combined(const Vec3& origin, const std::array<Vec3, 3>& axes, double a, double b, double c);
+
 // A flat rectangle (u, v: metres along the first two axes), what an edge of a profile sweeps out
 // about the third axis (u: angle, v: share of the way from its lower end to its upper), or a piece
 // of a sphere (u, v: longitude and latitude).
@@ -38,6 +41,9 @@ struct Patch {
     double area(const Sheet& sheet_of_it) const;
     // The point at shares (0 to 1) of its area along u and along v.
     Sheet::Place spread(const Sheet& sheet_of_it, double along_u, double along_v) const;
+    Sheet::Place middle(const Sheet& sheet_of_it) const {
+        return sheet_of_it.at((u[0] + u[1]) / 2, (v[0] + v[1]) / 2);
+    }
     std::array<Patch, 4> quarters() const;
 };
 

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/vectors.h"
 #include "host/io/files.h"
-#include "host/lab/boxes_meet.h"
 #include "lab/temporary_folder.h"
 #include "points/formats/read_cloud.h"
 #include "topple/error.h"
@@ -31,13 +31,7 @@ std::vector<Scanned> points_of(const std::string& ply) {
 }
 
 // Two rooms, each point 6 cm from the next.
-constexpr BuildingOptions small{.seed = 3,
-                                .points = 61'000,
-                                .spacing_m = 0.06,
-                                .storeys = 0,
-                                .varied = false,
-                                .noise_m = 0,
-                                .threads = 0};
+constexpr BuildingOptions small{.seed = 3, .points = 61'000, .spacing_m = 0.06, .noise_m = 0};
 
 struct Files {
     std::string cloud;
@@ -56,7 +50,7 @@ const Files& small_building() {
 }
 
 Vec3 in_room(const Building::Room& room, const Scanned& p) {
-    return {p.x - room.origin[0], p.y - room.origin[1], p.z - room.origin[2]};
+    return minus({p.x, p.y, p.z}, room.origin);
 }
 
 // The room whose part of the building, up to the middle of its walls, holds a point.
@@ -103,11 +97,7 @@ TEST(Building, PointsLieOnTheirObjectsAndInNothing) {
         std::array<double, 2> nearest{1, 1};
         std::int32_t object = -1;
         for (const Part& part : room.world.parts) {
-            const auto box = part.bounds();
-            bool far = false;
-            for (std::size_t a = 0; a < 3; ++a)
-                far = far || q[a] < box[0][a] - 0.01 || q[a] > box[1][a] + 0.01;
-            if (far) continue;
+            if (!overlap(part.bounds(), Bounds{q, q}, 0.01)) continue;
             const double distance = part.distance(q);
             if (distance < nearest[0]) {
                 nearest = {distance, nearest[0]};
@@ -133,12 +123,9 @@ TEST(Building, TheScannerSeesThePoints) {
         const Vec3 q = in_room(room, points[k]);
         const bool seen =
             std::any_of(room.stations.begin(), room.stations.end(), [&](const Vec3& from) {
-                const Vec3 way{q[0] - from[0], q[1] - from[1], q[2] - from[2]};
-                const double length = std::hypot(way[0], way[1], way[2]);
-                const Vec3 d{way[0] / length, way[1] / length, way[2] / length};
-                const auto& parts = room.world.parts;
-                return std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
-                    return part.hit(from, d) > length - 1e-4;
+                const Vec3 way = minus(q, from);
+                return std::ranges::all_of(room.world.parts, [&](const Part& part) {
+                    return part.hit(from, unit(way)) > length(way) - 1e-4;
                 });
             });
         if (!seen) ++hidden;
@@ -233,7 +220,7 @@ TEST_P(BuildingOf, SolidsNeverOverlap) {
         const auto& parts = room.world.parts;
         for (std::size_t a = 0; a < parts.size() && parts[a].object == 0; ++a) {
             for (std::size_t b = a + 1; b < parts.size(); ++b) {
-                if (!boxes_meet(parts[a], parts[b])) continue;
+                if (!overlap(parts[a].bounds(), parts[b].bounds(), -1e-9)) continue;
                 EXPECT_GT(gap(parts[a], parts[b]), -1e-6)
                     << "room " << room.id << ": " << parts[a].name << " and " << parts[b].name;
             }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lab/rooms/furnished_room.h"
 
+#include "core/union_find.h"
 #include "device/devices.h"
-#include "host/lab/boxes_meet.h"
 #include "lab/evaluation/room.h"
 #include "lab/random.h"
 #include "testing.h"
@@ -19,9 +19,10 @@ class FurnishedRoom : public ::testing::TestWithParam<bool> {
     static World room(std::uint64_t seed) {
         return furnished_room({.seed = seed, .varied = GetParam()});
     }
-    static std::map<std::uint64_t, World> rooms() {
-        std::map<std::uint64_t, World> out;
-        for (std::uint64_t seed = 0; seed < seeds; ++seed) out.emplace(seed, room(seed));
+    static const std::map<std::uint64_t, World>& rooms() {
+        static std::map<std::uint64_t, World> of[2];
+        auto& out = of[GetParam()];
+        for (std::uint64_t seed = out.size(); seed < seeds; ++seed) out.emplace(seed, room(seed));
         return out;
     }
 };
@@ -35,9 +36,11 @@ std::string name(const World& world, std::int32_t part) {
 
 TEST_P(FurnishedRoom, SolidsNeverOverlap) {
     for (const auto& [seed, world] : rooms()) {
+        std::vector<Bounds> boxes;
+        for (const Part& part : world.parts) boxes.push_back(part.bounds());
         for (std::size_t a = 0; a < world.parts.size(); ++a) {
             for (std::size_t b = a + 1; b < world.parts.size(); ++b) {
-                if (!boxes_meet(world.parts[a], world.parts[b])) continue;
+                if (!overlap(boxes[a], boxes[b], -1e-9)) continue;
                 EXPECT_GT(gap(world.parts[a], world.parts[b]), -1e-6)
                     << "seed " << seed << ": " << name(world, static_cast<std::int32_t>(a))
                     << " and " << name(world, static_cast<std::int32_t>(b));
@@ -134,21 +137,14 @@ TEST_P(FurnishedRoom, NothingFloats) {
 
 TEST_P(FurnishedRoom, PartsOfAnObjectAreJoined) {
     for (const auto& [seed, world] : rooms()) {
-        std::vector<std::size_t> group(world.parts.size());
-        for (std::size_t k = 0; k < group.size(); ++k) group[k] = k;
-        const auto root = [&](std::size_t k) {
-            while (group[k] != k) k = group[k];
-            return k;
-        };
+        UnionFind joined(world.parts.size());
         for (const auto& [a, b] : world.fixed)
-            group[root(static_cast<std::size_t>(a))] = root(static_cast<std::size_t>(b));
-        for (std::size_t a = 0; a < group.size(); ++a) {
-            for (std::size_t b = 0; b < a; ++b) {
-                if (world.parts[a].object == world.parts[b].object) {
-                    EXPECT_EQ(root(a), root(b))
-                        << "seed " << seed << ": " << name(world, static_cast<std::int32_t>(a));
-                }
-            }
+            joined.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+        // Parts of an object follow one another.
+        for (std::size_t n = 1; n < world.parts.size(); ++n) {
+            if (world.parts[n].object != world.parts[n - 1].object) continue;
+            EXPECT_EQ(joined.root(n), joined.root(n - 1))
+                << "seed " << seed << ": " << name(world, static_cast<std::int32_t>(n));
         }
     }
 }
@@ -249,11 +245,7 @@ scenes::Sequence one_view(const scenes::World& w, const scenes::CameraOptions& c
     const Mat4 pose = scenes::look_at({0.5, 1.5, 1}, {3, 1.5, 1});
     sequence.frames.resize(1);
     scenes::render(w, camera, pose, 1, sequence.frames[0].depth);
-    Mat4& m = sequence.frames[0].camera_to_world;
-    for (std::size_t column = 0; column < 4; ++column) {
-        const Vec3 v = w.to_input({pose[column], pose[4 + column], pose[8 + column]});
-        for (std::size_t row = 0; row < 3; ++row) m[4 * row + column] = v[row];
-    }
+    sequence.frames[0].camera_to_world = scenes::product(scenes::rigid(w.tilt, {}), pose);
     return sequence;
 }
 
@@ -328,16 +320,21 @@ TEST(SurfaceAlone, KeepsWhatWasSeen) {
     EXPECT_EQ(seen.z, std::vector<float>{2});
 }
 
-// A single frame knows neither where the camera stood nor how it was turned: the result is judged
-// in the room's frame all the same.
-TEST(Room, OfASingleFrameIsJudgedInTheRoom) {
+RoomOptions coarse_options(std::uint64_t seed) {
     RoomOptions options;
-    options.room.seed = options.camera.seed = 2;
-    options.room.tilt_deg = 10;
-    options.camera.single = true;
+    options.room.seed = options.camera.seed = seed;
     options.parse.voxel_m = 0.03;
     options.parse.disturbances = {"wind"};
     options.parse.device = device::open_device("native");
+    return options;
+}
+
+// A single frame knows neither where the camera stood nor how it was turned: the result is judged
+// in the room's frame all the same.
+TEST(Room, OfASingleFrameIsJudgedInTheRoom) {
+    RoomOptions options = coarse_options(2);
+    options.room.tilt_deg = 10;
+    options.camera.single = true;
     const Room room = scan_and_parse(options);
     const auto nobodys = std::count(room.part.begin(), room.part.end(), -1);
     EXPECT_LT(nobodys, static_cast<std::ptrdiff_t>(room.part.size() / 20));
@@ -350,12 +347,8 @@ TEST(Room, OfASingleFrameIsJudgedInTheRoom) {
 
 // A parse that says what is true, of a scan of few frames: judged as such.
 TEST(Room, IsScannedParsedAndJudged) {
-    RoomOptions options;
-    options.room.seed = options.camera.seed = 3;
+    RoomOptions options = coarse_options(3);
     options.camera.frames = 8;
-    options.parse.voxel_m = 0.03;
-    options.parse.disturbances = {"wind"};
-    options.parse.device = device::open_device("native");
     const Room room = scan_and_parse(options);
     const ScenePoints& points = room.parse.scene.points;
     ASSERT_EQ(room.part.size(), points.x.size());

@@ -25,15 +25,13 @@ std::vector<std::string> composed() {
     return names;
 }
 
-bool apart(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q, double by) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        if (p[0][a] >= q[1][a] - by || q[0][a] >= p[1][a] - by) return true;
+double area_of(const std::vector<Point>& polygon) {
+    double twice = 0;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Point &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+        twice += a[0] * b[1] - a[1] * b[0];
     }
-    return false;
-}
-
-double cross(const Point& a, const Point& b) {
-    return a[0] * b[1] - a[1] * b[0];
+    return twice / 2;
 }
 
 // Places where a part's lowest rim meets another solid, within 3 mm.
@@ -95,12 +93,12 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EachKind, ::testing::ValuesIn(composed()),
 TEST_P(EachKind, solids_of_different_things_do_not_overlap) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const World world = make_world(GetParam(), seed);
-        std::vector<std::array<Vec3, 2>> boxes;
+        std::vector<Bounds> boxes;
         for (const Part& part : world.parts) boxes.push_back(part.bounds());
         for (std::size_t a = 0; a < boxes.size(); ++a) {
             for (std::size_t b = a + 1; b < boxes.size(); ++b) {
                 const Part &p = world.parts[a], &q = world.parts[b];
-                if (p.object == q.object || apart(boxes[a], boxes[b], 0.001)) continue;
+                if (p.object == q.object || !overlap(boxes[a], boxes[b], -0.001)) continue;
                 EXPECT_GT(gap(p, q, 2e-4), -0.001)
                     << seed << ": " << p.name << " of " << world.objects[p.object].name << " in "
                     << q.name << " of " << world.objects[q.object].name;
@@ -134,14 +132,8 @@ TEST_P(EachKind, what_stands_has_its_middle_over_what_carries_it) {
             auto corners = contacts;
             for (const Mass& m : {mass_of(world, object), load[n]})
                 corners.push_back({m.at[0], m.at[1]});
-            const auto around = physics::convex_polygon(contacts),
-                       with = physics::convex_polygon(corners);
-            double area = 0, more = 0;
-            for (std::size_t k = 0; k < around.size(); ++k)
-                area += cross(around[k], around[(k + 1) % around.size()]) / 2;
-            for (std::size_t k = 0; k < with.size(); ++k)
-                more += cross(with[k], with[(k + 1) % with.size()]) / 2;
-            EXPECT_LE(more, 1.1 * area + 2e-4)
+            EXPECT_LE(area_of(physics::convex_polygon(corners)),
+                      1.1 * area_of(physics::convex_polygon(contacts)) + 2e-4)
                 << seed << ": " << world.objects[n].name << " on " << world.objects[n].where;
         }
     }

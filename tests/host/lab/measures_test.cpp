@@ -11,8 +11,7 @@ namespace {
 scenes::MeasuredShape shape(const std::string& name) {
     for (scenes::MeasuredShape& s : scenes::measured_shapes())
         if (s.name == name) return s;
-    ADD_FAILURE() << name;
-    return {};
+    throw std::out_of_range(name);
 }
 
 TrueMeasures truth_of(const std::string& name, std::uint64_t seed) {
@@ -157,7 +156,7 @@ std::vector<RoomScore> three_rooms() {
     for (std::size_t n = 0; n < rooms.size(); ++n) {
         rooms[n].seed = n + 1;
         const double v = 0.1 * static_cast<double>(n);
-        rooms[n].parts_by_primitive = {0.01 + v, 0, 0.02, 0.125 + v, 0.9 - v, 0, 5};
+        rooms[n].parts_by_primitive = {0.01 + v, 0, 0.02, 0.125 + v, 0.9 - v};
         rooms[n].completed = {{0.95 - v, 100}, {0.80 + v, 100}};
     }
     rooms[0].relations.fixed_recall = {0.5, 10};  // the other rooms have no joints

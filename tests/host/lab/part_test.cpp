@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "core/vectors.h"
 #include "lab/random.h"
 #include "lab/solids/part_surface.h"
 #include "lab/solids/scene.h"
@@ -72,12 +73,7 @@ TEST(Part, NothingIsInsideBeyondTheBounds) {
         const auto box = part.bounds();
         for (int n = 0; n < 20000; ++n) {
             const Vec3 p = in_box(random, box, 0.3);
-            bool within = true;
-            for (std::size_t k = 0; k < 3; ++k)
-                within = within && p[k] >= box[0][k] && p[k] <= box[1][k];
-            if (!within) {
-                EXPECT_GT(part.distance(p), 0) << part.name;
-            }
+            EXPECT_TRUE(overlap(box, Bounds{p, p}) || part.distance(p) > 0) << part.name;
         }
     }
 }
@@ -130,12 +126,9 @@ TEST(Part, DistanceIsTheDistance) {
             const Vec3 p = in_box(random, part.bounds(), 0.4);
             const double d = part.distance(p);
             if (d < 0.01) continue;
-            const Vec3 g = part.normal(p);
-            const Vec3 foot{p[0] - d * g[0], p[1] - d * g[1], p[2] - d * g[2]};
-            EXPECT_NEAR(part.distance(foot), 0, 1e-4) << part.name;
+            EXPECT_NEAR(part.distance(along(p, -d, part.normal(p))), 0, 1e-4) << part.name;
             const Vec3 q = in_box(random, part.bounds(), 0.4);
-            const double apart = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-            EXPECT_LE(std::abs(d - part.distance(q)), apart + 1e-12) << part.name;
+            EXPECT_LE(std::abs(d - part.distance(q)), length(minus(p, q)) + 1e-12) << part.name;
         }
     }
 }
@@ -148,25 +141,17 @@ TEST(Part, RaysEndOnTheSurface) {
         for (int n = 0; n < 20000; ++n) {
             const Vec3 o = in_box(random, part.bounds(), 0.5),
                        to = in_box(random, part.bounds(), 0.1);
-            const double length = std::hypot(to[0] - o[0], to[1] - o[1], to[2] - o[2]);
-            const Vec3 d{(to[0] - o[0]) / length, (to[1] - o[1]) / length, (to[2] - o[2]) / length};
+            const Vec3 d = unit(minus(to, o));
             const double t = part.hit(o, d);
             const double end = std::min(t, 3.0);
             const bool started_inside = part.distance(o) < 0;
             for (int k = 1; k < 20; ++k) {
-                const double s = end * k / 20;
-                const double at =
-                    part.distance({o[0] + s * d[0], o[1] + s * d[1], o[2] + s * d[2]});
-                if (started_inside) {
-                    EXPECT_LT(at, 1e-9) << part.name;
-                } else {
-                    EXPECT_GT(at, -1e-9) << part.name;
-                }
+                const double at = part.distance(along(o, end * k / 20, d));
+                EXPECT_GT(started_inside ? -at : at, -1e-9) << part.name;
             }
             if (t == std::numeric_limits<double>::infinity()) continue;
             ++hits;
-            EXPECT_NEAR(part.distance({o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]}), 0, 1e-9)
-                << part.name;
+            EXPECT_NEAR(part.distance(along(o, t, d)), 0, 1e-9) << part.name;
         }
         EXPECT_GT(hits, 5000) << part.name;
     }
@@ -212,9 +197,9 @@ TEST(Random, IsNormal) {
 
 TEST(Random, IsTheSameEverywhere) {
     Random random(1);
-    EXPECT_EQ(random.next(), Random(1).next());
-    EXPECT_NE(Random(1).next(), Random(2).next());
-    EXPECT_NE(Random(1, 0).next(), Random(1, 1).next());
+    EXPECT_EQ(random.bits(), Random(1).bits());
+    EXPECT_NE(Random(1).bits(), Random(2).bits());
+    EXPECT_NE(Random(1, 0).bits(), Random(1, 1).bits());
     std::array<int, 6> seen{};
     for (int k = 0; k < 6000; ++k) seen[random.integer(2, 7) - 2]++;
     for (const int count : seen) EXPECT_NEAR(count, 1000, 150);  // five standard deviations
@@ -293,10 +278,8 @@ TEST(PartSurface, PointsLieOnTheSolidWithItsNormal) {
             const Sheet& sheet = sheets[patch.sheet];
             const auto [p, n] = patch.spread(sheet, random(0.01, 0.99), random(0.01, 0.99));
             ASSERT_NEAR(solid.part.distance(p), 0, 1e-9) << solid.name;
-            const Vec3 out{p[0] + 1e-4 * n[0], p[1] + 1e-4 * n[1], p[2] + 1e-4 * n[2]};
-            ASSERT_NEAR(solid.part.distance(out), 1e-4, 1e-7) << solid.name;
-            const auto corner = sheet.at(patch.u[0], patch.v[0]).point;
-            ASSERT_LT(std::hypot(p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]), 0.036)
+            ASSERT_NEAR(solid.part.distance(along(p, 1e-4, n)), 1e-4, 1e-7) << solid.name;
+            ASSERT_LT(length(minus(p, sheet.at(patch.u[0], patch.v[0]).point)), 0.036)
                 << solid.name;
         }
     }

@@ -5,6 +5,7 @@
 
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_walk.h"
+#include "io/file_writer.h"
 #include "lab/scan/files.h"
 
 // Depth frames in the caller's memory: the same as those of a folder.
@@ -44,9 +45,8 @@ class FramesViews : public Files {
             }
             poses += '\n';
         }
-        scenes::write_text(path(name + "/poses.txt"), poses);
-        scenes::write_text(path(name + "/intrinsics.json"),
-                           scenes::intrinsics_text(walk_->intrinsics));
+        io::write_file(path(name + "/poses.txt"), poses);
+        io::write_file(path(name + "/intrinsics.json"), scenes::intrinsics_text(walk_->intrinsics));
     }
     static ParseOptions quick() {
         ParseOptions options = on(device::open_device("native", 2));
