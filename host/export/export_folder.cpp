@@ -11,7 +11,7 @@
 #include "export/colour_texture.h"
 #include "export/write_obj.h"
 #include "io/file_writer.h"
-#include "io/folder_names.h"
+#include "io/open_file.h"
 #include "io/replace_file.h"
 #include "io/text.h"
 

@@ -187,7 +187,7 @@ TEST(DepthCamera, FilesHoldTheFrames) {
     for (std::size_t n = 0; n < 2; ++n) {
         EXPECT_EQ(read.load(n).depth, sequence.frames[n].depth);
         for (std::size_t k = 0; k < 16; ++k)
-            EXPECT_NEAR(read.camera_to_world(n)[k], sequence.frames[n].camera_to_world[k], 1e-8);
+            EXPECT_NEAR(read.poses()[n][k], sequence.frames[n].camera_to_world[k], 1e-8);
     }
 }
 
