@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
 
 #include "core/ranked.h"
+#include "core/sort_unique.h"
 #include "vdb/completion.h"
 
 // Fronts of what is built in: a wall cabinet that was seen from before alone has neither sides nor
@@ -76,8 +76,7 @@ class Front {
         const std::size_t before = claims.size();
         std::size_t columns = 0, hidden = 0;
         for (const std::size_t n : sheet_.cells) {
-            const SolidCells& cells = view_.cells();
-            Voxel at{cells.i[n], cells.j[n], cells.k[n]};
+            Voxel at = place_of(view_.cells(), n);
             at[axis_] += way_;
             // The backmost voxel of its column, of the front itself.
             if (at[axis_] < sheet_.low[axis_] - 1 || at[axis_] > sheet_.high[axis_] + 1 ||
@@ -123,9 +122,7 @@ std::vector<Claim> built_in_claims(const VolumeView& view) {
         }
     }
     // Of two fronts the one with the lower number.
-    std::ranges::stable_sort(claims, {}, &Claim::at);
-    const auto same = [](const Claim& a, const Claim& b) { return a.at == b.at; };
-    claims.erase(std::unique(claims.begin(), claims.end(), same), claims.end());
+    sort_unique(claims, &Claim::at);
     return claims;
 }
 

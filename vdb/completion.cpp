@@ -17,22 +17,18 @@ SolidCells merged(const SolidCells& cells, std::span<const Claim> claims) {
     const std::size_t most = cells.size() + claims.size();
     for (auto* values : {&out.i, &out.j, &out.k, &out.primitive}) values->reserve(most);
     out.basis.reserve(most);
-    const auto add = [&](const Voxel& at, std::int32_t primitive, Basis basis) {
-        out.i.push_back(at[0]);
-        out.j.push_back(at[1]);
-        out.k.push_back(at[2]);
-        out.primitive.push_back(primitive);
-        out.basis.push_back(basis);
-    };
     auto claim = claims.begin();
+    const auto take = [&] {
+        if (claim->solid) out.add(claim->at, claim->primitive, claim->basis);
+        ++claim;
+    };
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        const Voxel at{cells.i[n], cells.j[n], cells.k[n]};
-        for (; claim != claims.end() && claim->at < at; ++claim)
-            if (claim->solid) add(claim->at, claim->primitive, claim->basis);
-        if (claim == claims.end() || claim->at != at) add(at, cells.primitive[n], cells.basis[n]);
+        const Voxel at = place_of(cells, n);
+        while (claim != claims.end() && claim->at < at) take();
+        if (claim == claims.end() || claim->at != at)
+            out.add(at, cells.primitive[n], cells.basis[n]);
     }
-    for (; claim != claims.end(); ++claim)
-        if (claim->solid) add(claim->at, claim->primitive, claim->basis);
+    while (claim != claims.end()) take();
     return out;
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/ledge.h"
 #include "core/role.h"
 #include "core/solid_cells.h"
 #include "core/space_map.h"
@@ -88,12 +89,8 @@ std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene
 
 // Ends filled solids at the surface on which they are seen to stand: rays pass from a box into
 // the table top that it hides, and take that for more of the box. What lies below goes to the
-// primitive stood on, or beside it to a leg. on: where that is known.
-struct StandsOn {
-    std::int32_t above = -1, below = -1;  // primitives
-    double height_m = 0;                  // of the one's foot, grid frame
-};
-std::vector<Claim> support_claims(const VolumeView& view, std::span<const StandsOn> on = {});
+// primitive stood on, or beside it to a leg. ledges: where that is known.
+std::vector<Claim> support_claims(const VolumeView& view, std::span<const Ledge> ledges = {});
 
 // Slender parts (up to 10 cm) whose upper end nobody saw go on, through at most 60 cm of what
 // nobody saw, to the wider thing above them: legs under a seat.
@@ -128,7 +125,7 @@ std::uint64_t fill(device::Device& device, VoxelScene& volume, const FillOptions
 // All rounds.
 struct CompletionOptions {
     FillOptions fill;
-    std::vector<StandsOn> ledges;
+    std::vector<Ledge> ledges;
     const SpaceMap* map = nullptr;  // what it tells to be solid
 };
 void complete(device::Device& device, const CompletionOptions& options, VoxelScene& volume,

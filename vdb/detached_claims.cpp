@@ -51,7 +51,7 @@ std::vector<Claim> detached_claims(const VolumeView& view) {
     std::vector<Claim> out;
     for (std::size_t n = 0; n < cells.size(); ++n)
         if (pieces.is_thing(n) && !pieces.seen(n))
-            out.push_back({{cells.i[n], cells.j[n], cells.k[n]}, -1, cells.basis[n], false});
+            out.push_back({place_of(cells, n), -1, cells.basis[n], false});
     return out;
 }
 

@@ -157,8 +157,7 @@ class FillLeaves {
                 last = p;
             }
         }
-        std::ranges::sort(out);
-        out.erase(std::unique(out.begin(), out.end()), out.end());
+        sort_unique(out);
         return out;
     }
 

@@ -25,7 +25,7 @@ class Bridging {
     void along(int axis, std::int32_t longest) {
         const auto a = static_cast<std::size_t>(axis);
         for (std::size_t n = 0; n < cells_.size(); ++n) {
-            Voxel at{cells_.i[n], cells_.j[n], cells_.k[n]};
+            Voxel at = place_of(cells_, n);
             ++at[a];
             const std::int32_t gap = view_.unseen_run(at, axis, 1, longest + 1);
             if (gap < 1 || gap > longest) continue;

@@ -117,8 +117,6 @@ struct VoxelScene::Grids {
     openvdb::MaskTree points;  // voxels that hold points
     std::vector<std::int32_t> object_of_primitive;
     std::vector<std::pair<std::string, openvdb::FloatGrid::Ptr>> fields;
-    std::array<std::int32_t, 3> lowest{0, 0, 0}, highest{-1, -1, -1};
-    std::uint64_t unplaced = 0;
     Evidence evidence;
 
     // Takes leaves beyond the scene's bounds into the table.

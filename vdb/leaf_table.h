@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <vector>
+
+#include "core/place.h"
+#include "core/sort_unique.h"
 
 namespace topple::vdb {
 
@@ -12,7 +14,7 @@ namespace topple::vdb {
 // counted in units of 8 voxels; index 0 .. size()-1 runs over the box (x, then y, then z), then
 // over the others in the same order.
 struct LeafTable {
-    using Leaf = std::array<std::int32_t, 3>;
+    using Leaf = Place;
     Leaf low{0, 0, 0};    // of the box
     Leaf count{0, 0, 0};  // leaves per axis
     std::vector<Leaf> beyond;
@@ -46,6 +48,13 @@ struct LeafTable {
         const auto at = std::lower_bound(beyond.begin(), beyond.end(), leaf);
         if (at == beyond.end() || *at != leaf) return -1;
         return static_cast<std::int64_t>(box_size()) + (at - beyond.begin());
+    }
+    // Takes in those of so many leaves that lie beyond the box.
+    template <class LeafAt>
+    void take_in(std::size_t leaves, const LeafAt& leaf_at) {
+        for (std::size_t n = 0; n < leaves; ++n)
+            if (const Leaf leaf = leaf_at(n); !in_box(leaf)) beyond.push_back(leaf);
+        sort_unique(beyond);
     }
     // Voxel that the kernels' float coordinates are relative to: they stay small, hence exact.
     Leaf reference() const { return {low[0] * 8, low[1] * 8, low[2] * 8}; }

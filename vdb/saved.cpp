@@ -18,12 +18,7 @@ Voxel voxel_of(const openvdb::Coord& at) {
     return {at.x(), at.y(), at.z()};
 }
 
-// Whether sums of such places are no overflow.
-bool is_near(const Voxel& at) {
-    constexpr std::int32_t farthest = 1 << 30;
-    return std::ranges::all_of(at, [](auto x) { return x > -farthest && x < farthest; });
-}
-// The same of leaves by their number.
+// Of leaves by their number, whether sums of their places are no overflow.
 bool is_near_leaf(const Voxel& leaf) {
     constexpr std::int32_t farthest = 1 << 27;
     return std::ranges::all_of(leaf, [](auto x) { return x > -farthest && x < farthest; });
@@ -72,8 +67,7 @@ bool fits(const SavedVoxels& s) {
         std::ranges::all_of(s.labelled, is_leaf) && std::ranges::all_of(s.tiles, is_tile) &&
         std::ranges::all_of(s.states, [](std::uint8_t state) { return state <= last_state; }) &&
         std::ranges::is_sorted(s.beyond) && std::ranges::all_of(s.beyond, is_near_leaf) &&
-        is_near_leaf(s.bounds[0]) && is_box(s.bounds[1]) && is_near(s.bounds[2]) &&
-        is_near(s.bounds[3]) && lies_together(s);
+        is_near_leaf(s.bounds[0]) && is_box(s.bounds[1]) && lies_together(s);
     if (!right) return false;
     // What is solid has a label, if that is of none.
     const std::set<Voxel> labelled(s.labelled.begin(), s.labelled.end());
@@ -92,8 +86,7 @@ SavedVoxels VoxelScene::saved() const {
     const Grids& g = *grids_;
     SavedVoxels out;
     out.frame = g.frame;
-    out.bounds = {g.leaves.low, g.leaves.count, g.lowest, g.highest};
-    out.unplaced = g.unplaced;
+    out.bounds = {g.leaves.low, g.leaves.count};
     out.beyond = g.leaves.beyond;
     const auto& state = g.state->tree();
     auto value = state.cbeginValueAll();
@@ -128,9 +121,6 @@ VoxelScene::VoxelScene(const SavedVoxels& saved) : VoxelScene(saved.frame) {
     if (!fits(saved)) throw Error(ErrorKind::input, "saved voxels: they are no scene's");
     Grids& g = *grids_;
     g.leaves = {saved.bounds[0], saved.bounds[1], saved.beyond};
-    g.lowest = saved.bounds[2];
-    g.highest = saved.bounds[3];
-    g.unplaced = saved.unplaced;
     for (const SavedVoxels::Tile& t : saved.tiles)
         g.state->tree().addTile(static_cast<openvdb::Index>(t.level), {t.i, t.j, t.k}, t.value,
                                 t.active != 0);

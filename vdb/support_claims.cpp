@@ -71,16 +71,16 @@ class Settling {
     }
 
     // Those that are known.
-    void add(std::span<const StandsOn> known, std::map<std::int32_t, Stand>& stands) {
+    void add(std::span<const Ledge> ledges, std::map<std::int32_t, Stand>& stands) {
         const auto shown = [&](std::int32_t p) {
             return p >= 0 && static_cast<std::size_t>(p) < shapes_.size() && !shape(p).empty();
         };
-        for (const StandsOn& s : known) {
-            if (!shown(s.above) || !shown(s.below)) continue;
+        for (const Ledge& l : ledges) {
+            if (!shown(l.above) || !shown(l.below)) continue;
             // The highest voxel with its centre below the foot.
             const auto level =
-                static_cast<std::int32_t>(std::ceil(s.height_m / view_.voxel_m() - 0.5)) - 1;
-            stands[s.above] = {s.below, level, upper_median(shape(s.below).bottoms)};
+                static_cast<std::int32_t>(std::ceil(l.height_m / view_.voxel_m() - 0.5)) - 1;
+            stands[l.above] = {l.below, level, upper_median(shape(l.below).bottoms)};
         }
     }
 
@@ -101,7 +101,7 @@ class Settling {
                 at = stands.find(last->on);
             }
             if (!last) continue;
-            const Voxel voxel{cells_.i[n], cells_.j[n], k};
+            const Voxel voxel = place_of(cells_, n);
             owner_[voxel] = k >= last->bottom ? last->on : -1;
             if (k < last->bottom) open.push_back(voxel);
         }
@@ -135,7 +135,7 @@ class Settling {
     // Where the top of one solid is seen right beside another's side.
     void add_creases(std::size_t n) {
         if (cells_.basis[n] != Basis::surface || !view_.is_body(cells_.primitive[n])) return;
-        const Voxel above{cells_.i[n], cells_.j[n], cells_.k[n] + 1};
+        const Voxel above = moved(place_of(cells_, n), 2, 1);
         if (!view_.seen_empty(above)) return;
         for (const auto& side : sides) {
             const Voxel beside{above[0] + side[0], above[1] + side[1], above[2]};
@@ -183,10 +183,10 @@ class Settling {
 
 }  // namespace
 
-std::vector<Claim> support_claims(const VolumeView& view, std::span<const StandsOn> on) {
+std::vector<Claim> support_claims(const VolumeView& view, std::span<const Ledge> ledges) {
     Settling settling(view);
     std::map<std::int32_t, Stand> stands = settling.stands();
-    settling.add(on, stands);
+    settling.add(ledges, stands);
     return settling.settle(stands);
 }
 

@@ -61,18 +61,10 @@ Tiles VoxelScene::tiles(bool all) const {
         leaves = solid_leaves(*grids_->state);
     }
     Tiles tiles;
-    tiles.neighbour.reserve(6 * leaves.size());
     for (const auto& leaf : leaves) {
         tiles.x.push_back(leaf[0] * 8);
         tiles.y.push_back(leaf[1] * 8);
         tiles.z.push_back(leaf[2] * 8);
-        for (int side = 0; side < 6; ++side) {
-            auto next = leaf;
-            next[side / 2] += side % 2 ? 1 : -1;
-            const auto at = std::lower_bound(leaves.begin(), leaves.end(), next);
-            const bool found = at != leaves.end() && *at == next;
-            tiles.neighbour.push_back(found ? static_cast<std::int32_t>(at - leaves.begin()) : -1);
-        }
     }
     return tiles;
 }
@@ -130,12 +122,8 @@ SolidCells VoxelScene::solid_cells() const {
         const auto& [state, primitive] = grids[leaf];
         const auto offset = static_cast<openvdb::Index>(at);
         if (!state->isValueOn(offset)) return;
-        cells.i.push_back(voxel[0]);
-        cells.j.push_back(voxel[1]);
-        cells.k.push_back(voxel[2]);
-        cells.primitive.push_back(primitive->getValue(offset));
         const bool seen = state->getValue(offset) == static_cast<std::int32_t>(State::surface);
-        cells.basis.push_back(seen ? Basis::surface : Basis::two_votes);
+        cells.add(voxel, primitive->getValue(offset), seen ? Basis::surface : Basis::two_votes);
     });
     return cells;
 }

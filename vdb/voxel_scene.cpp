@@ -124,22 +124,10 @@ struct SortedPoints {
     LeafTable leaves;
     std::vector<std::uint64_t> voxel;  // leaf * 512 + offset, ascending
     std::vector<std::size_t> point;
-    std::array<std::int32_t, 3> lowest{0, 0, 0}, highest{-1, -1, -1};
-    std::uint64_t unplaced = 0;
 };
 
 LeafTable::Leaf leaf_of(const std::array<std::vector<std::int32_t>, 3>& index, std::size_t n) {
     return {index[0][n] >> 3, index[1][n] >> 3, index[2][n] >> 3};
-}
-
-void add_beyond(const std::array<std::vector<std::int32_t>, 3>& index, LeafTable& leaves) {
-    auto& beyond = leaves.beyond;
-    for (std::size_t n = 0; n < index[0].size(); ++n) {
-        const LeafTable::Leaf leaf = leaf_of(index, n);
-        if (!leaves.in_box(leaf)) beyond.push_back(leaf);
-    }
-    std::ranges::sort(beyond);
-    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end());
 }
 
 SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
@@ -161,7 +149,6 @@ SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
         if (all) within.push_back(n);
     }
     SortedPoints out;
-    out.unplaced = cloud.size() - within.size();
     if (within.empty()) return out;
     if (within.size() > std::numeric_limits<std::uint32_t>::max())
         throw Error(ErrorKind::input, std::to_string(within.size()) +
@@ -173,12 +160,7 @@ SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
             index[a][n] = static_cast<std::int32_t>(placed.at[a][within[n]]);
     });
     out.leaves = box_of(frame, index);
-    add_beyond(index, out.leaves);
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto [low, high] = std::ranges::minmax_element(index[a]);
-        out.lowest[a] = *low;
-        out.highest[a] = *high;
-    }
+    out.leaves.take_in(within.size(), [&](std::size_t n) { return leaf_of(index, n); });
     std::vector<std::uint64_t> voxel(within.size());
     each_point(within.size(), [&](std::size_t n) {
         const auto leaf = static_cast<std::uint64_t>(out.leaves.index_of(leaf_of(index, n)));
@@ -213,10 +195,7 @@ void each_voxel(const SortedPoints& points, const Enter& enter, const Use& use) 
 }
 
 void mark_surface(const SortedPoints& points, VoxelScene::Grids& g) {
-    g.unplaced += points.unplaced;
     g.leaves = points.leaves;
-    g.lowest = points.lowest;
-    g.highest = points.highest;
     StateLeaf* state = nullptr;
     openvdb::MaskTree::LeafNodeType* mask = nullptr;
     each_voxel(
@@ -319,17 +298,8 @@ VoxelScene::VoxelScene(VoxelScene&&) noexcept = default;
 const VoxelFrame& VoxelScene::frame() const {
     return grids_->frame;
 }
-std::uint64_t VoxelScene::unplaced_points() const {
-    return grids_->unplaced;
-}
 bool VoxelScene::in_bounds(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return grids_->leaves.in_box({i >> 3, j >> 3, k >> 3});
-}
-std::array<std::int32_t, 3> VoxelScene::lowest() const {
-    return grids_->lowest;
-}
-std::array<std::int32_t, 3> VoxelScene::highest() const {
-    return grids_->highest;
 }
 
 void VoxelScene::set_objects(std::span<const std::int32_t> object_of_primitive) {
@@ -371,12 +341,7 @@ void VoxelScene::set_empty(std::span<const Voxel> voxels) {
 }
 
 void VoxelScene::Grids::take_in(std::span<const LeafTable::Leaf> changed) {
-    auto& beyond = leaves.beyond;
-    for (const LeafTable::Leaf& leaf : changed) {
-        if (!leaves.in_box(leaf)) beyond.push_back(leaf);
-    }
-    std::sort(beyond.begin(), beyond.end());
-    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end());
+    leaves.take_in(changed.size(), [&](std::size_t n) { return changed[n]; });
     evidence = {};  // by the table's leaves
 }
 

@@ -31,19 +31,17 @@ enum class State : std::uint8_t { empty = 0, surface = 1, invisible = 2, complet
 // Leaves of 8x8x8 voxels, sorted by origin (x, then y, then z). Voxel (x, y, z) of leaf n has index
 // n * 512 + (x & 7) * 64 + (y & 7) * 8 + (z & 7), in every per-voxel array here.
 struct Tiles {
-    std::vector<std::int32_t> x, y, z;    // lowest voxel of each leaf, multiples of 8
-    std::vector<std::int32_t> neighbour;  // 6 per leaf: -x, +x, -y, +y, -z, +z; -1 where absent
+    std::vector<std::int32_t> x, y, z;  // lowest voxel of each leaf, multiples of 8
     std::size_t size() const { return x.size(); }
 };
 
-using Voxel = std::array<std::int32_t, 3>;
+using Voxel = Place;
 
 // A scene's voxels as plain arrays, but for the fields that were added and the objects.
 struct SavedVoxels {
     VoxelFrame frame;
-    std::array<Voxel, 4> bounds{};  // lowest leaf and leaves per axis; lowest and highest surface
-    std::uint64_t unplaced = 0;
-    std::vector<Voxel> beyond;  // leaves outside of the bounds
+    std::array<Voxel, 2> bounds{};  // lowest leaf and leaves per axis
+    std::vector<Voxel> beyond;      // leaves outside of the bounds
     // What is stored as one value: its level in the tree, lowest voxel, value, and whether active.
     struct Tile {
         std::int32_t level, i, j, k, value, active;
@@ -63,9 +61,10 @@ class VoxelScene {
     // surface). A voxel takes the label that most of its labelled points have, the lowest of
     // equals. The scene's bounds are those of its points; where few stray points lie far from all
     // others, the bounds leave them out (0.1 % per side), and only their own leaves exist out
-    // there, which belong to no primitive. Throws Error(usage) for a frame that is no rotation, a
-    // voxel size that is not positive, or labels that don't match the points; Error(input) where
-    // the bounds hold more leaves than memory allows.
+    // there, which belong to no primitive. Points that no voxel index can reach, further than 2^20
+    // voxels from the points' median, are left out. Throws Error(usage) for a frame that is no
+    // rotation, a voxel size that is not positive, or labels that don't match the points;
+    // Error(input) where the bounds hold more leaves than memory allows.
     VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
                std::span<const std::int32_t> label);
     // The same before labels are known: what is carved doesn't depend on them.
@@ -86,9 +85,6 @@ class VoxelScene {
     void put_label(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive);
 
     const VoxelFrame& frame() const;
-
-    // Points that no voxel index can reach: further than 2^20 voxels from the points' median.
-    std::uint64_t unplaced_points() const;
 
     // Whether a voxel lies within the scene's bounds, rounded outwards to whole leaves.
     bool in_bounds(std::int32_t i, std::int32_t j, std::int32_t k) const;
@@ -128,9 +124,6 @@ class VoxelScene {
     // The solid voxels, flattened; of completed ones it says no more than that they were filled.
     // What follows the completion gets them from there.
     SolidCells solid_cells() const;
-
-    // Bounds of all surface voxels, inclusive; highest < lowest where there are none.
-    std::array<std::int32_t, 3> lowest() const, highest() const;
 
     // Object of each primitive, for write(); -1 where the span ends.
     void set_objects(std::span<const std::int32_t> object_of_primitive);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/place.h"
 
 namespace topple {
 
@@ -18,6 +19,14 @@ struct SolidCells {
     // Voxels right below each that nobody has seen into, up to 255; empty: none for all.
     std::vector<std::uint8_t> unseen_below;
     std::size_t size() const { return i.size(); }
+    // One more, of which unseen_below says nothing.
+    void add(const Place& at, std::int32_t of, Basis why) {
+        i.push_back(at[0]);
+        j.push_back(at[1]);
+        k.push_back(at[2]);
+        primitive.push_back(of);
+        basis.push_back(why);
+    }
 };
 
 // A solid has at least the volume of a cube of two voxels; less is a fragment that noise left,

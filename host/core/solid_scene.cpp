@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/solid_scene.h"
 
-#include <array>
 #include <string>
 
 #include "topple/error.h"
@@ -13,10 +12,6 @@ namespace {
     throw Error(ErrorKind::usage, "solid scene: " + why);
 }
 
-std::array<std::int32_t, 3> place(const SolidCells& cells, std::size_t n) {
-    return {cells.i[n], cells.j[n], cells.k[n]};
-}
-
 void check(const SolidCells& cells, std::size_t primitives) {
     const std::size_t count = cells.size();
     const bool whole = cells.j.size() == count && cells.k.size() == count &&
@@ -24,7 +19,7 @@ void check(const SolidCells& cells, std::size_t primitives) {
                        (cells.unseen_below.empty() || cells.unseen_below.size() == count);
     if (!whole) refuse("arrays of cells that differ in length");
     for (std::size_t n = 0; n < count; ++n) {
-        if (n > 0 && place(cells, n) <= place(cells, n - 1))
+        if (n > 0 && place_of(cells, n) <= place_of(cells, n - 1))
             refuse("cells are not sorted by (i, j, k) at cell " + std::to_string(n));
         if (cells.primitive[n] < -1 || cells.primitive[n] >= static_cast<std::int64_t>(primitives))
             refuse("cell " + std::to_string(n) + " is of primitive " +
@@ -36,11 +31,7 @@ void check(const SolidCells& cells, std::size_t primitives) {
 }
 
 void add(const SolidCells& from, std::size_t n, SolidCells& to) {
-    to.i.push_back(from.i[n]);
-    to.j.push_back(from.j[n]);
-    to.k.push_back(from.k[n]);
-    to.primitive.push_back(from.primitive[n]);
-    to.basis.push_back(from.basis[n]);
+    to.add(place_of(from, n), from.primitive[n], from.basis[n]);
 }
 
 }  // namespace
@@ -68,7 +59,7 @@ SolidCells SolidScene::with_strays() const {
     out.voxel_m = cells_.voxel_m;
     std::size_t stray = 0;
     for (std::size_t n = 0; n < cells_.size(); ++n) {
-        for (; stray < strays_.size() && place(strays_, stray) < place(cells_, n); ++stray)
+        for (; stray < strays_.size() && place_of(strays_, stray) < place_of(cells_, n); ++stray)
             add(strays_, stray, out);
         add(cells_, n, out);
     }

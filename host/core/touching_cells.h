@@ -13,8 +13,7 @@ namespace topple {
 // (i, j, k).
 template <class Visit>
 void each_touching(const SolidCells& cells, const Visit& visit) {
-    using Place = std::array<std::int32_t, 3>;
-    const auto place = [&](std::size_t n) { return Place{cells.i[n], cells.j[n], cells.k[n]}; };
+    const auto place = [&](std::size_t n) { return place_of(cells, n); };
     constexpr std::array<std::array<std::int32_t, 2>, 4> rows{
         {{0, -1}, {-1, -1}, {-1, 0}, {-1, 1}}};
     std::array<std::size_t, 4> first{};

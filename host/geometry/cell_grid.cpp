@@ -24,8 +24,7 @@ KeyGroups group_keys(std::span<const std::uint64_t> keys) {
     return groups;
 }
 
-CellPacking::CellPacking(const std::array<std::int64_t, 3>& lowest,
-                         const std::array<std::int64_t, 3>& highest, int reach) {
+CellPacking::CellPacking(const GridCell& lowest, const GridCell& highest, int reach) {
     for (std::size_t a = 0; a < 3; ++a) lowest_[a] = lowest[a] - reach;
     const auto bits = [&](std::size_t a) {
         return std::bit_width(static_cast<std::uint64_t>(highest[a] + reach - lowest_[a]));
@@ -41,40 +40,62 @@ void CellGrid::resize(std::size_t count) {
     for (auto& plane : spread) plane.resize(count);
 }
 
+namespace {
+
+// As spreads are: xx yy zz xy xz yz.
+std::array<double, 6> products_of(const std::array<double, 3>& d) {
+    return {d[0] * d[0], d[1] * d[1], d[2] * d[2], d[0] * d[1], d[0] * d[2], d[1] * d[2]};
+}
+
+}  // namespace
+
+void MomentSums::add(double w, const std::array<double, 3>& at,
+                     const std::array<double, 6>& spread) {
+    const std::array<double, 6> products = products_of(at);
+    weight += w;
+    for (std::size_t a = 0; a < 3; ++a) first[a] += w * at[a];
+    for (std::size_t a = 0; a < 6; ++a) second[a] += w * (products[a] + spread[a]);
+}
+
+CellMoments MomentSums::moments() const {
+    const double all = weight > 0 ? weight : 1;
+    std::array<double, 3> mean = first;
+    for (double& value : mean) value /= all;
+    const std::array<double, 6> products = products_of(mean);
+    CellMoments out;
+    for (std::size_t a = 0; a < 3; ++a) out.mean[a] = static_cast<float>(mean[a]);
+    for (std::size_t a = 0; a < 6; ++a)
+        out.spread[a] = static_cast<float>(second[a] / all - products[a]);
+    return out;
+}
+
 CellMoments moments_of(const std::array<FloatColumn, 3>& cloud,
-                       std::span<const std::uint32_t> points, const std::array<std::int32_t, 3>& at,
-                       double cell_m) {
+                       std::span<const std::uint32_t> points, const Place& at, double cell_m) {
     // Sums of places are integers: a cell's edge counts as this much. Enough for 2^33 points.
     constexpr double cell_steps = 0x1p32;
     std::array<std::int64_t, 3> sum{};
-    std::array<std::int64_t, 6> products{};
+    std::array<std::int64_t, 6> sum_of_products{};
     const auto steps = [](double v) { return static_cast<std::int64_t>(v * cell_steps); };
     for (const std::uint32_t i : points) {
         std::array<double, 3> d{};
         for (std::size_t a = 0; a < 3; ++a) {
             d[a] = cloud[a][i] / cell_m - (static_cast<double>(at[a]) + 0.5);
             sum[a] += steps(d[a]);
-            products[a] += steps(d[a] * d[a]);
         }
-        products[3] += steps(d[0] * d[1]);
-        products[4] += steps(d[0] * d[2]);
-        products[5] += steps(d[1] * d[2]);
+        const std::array<double, 6> products = products_of(d);
+        for (std::size_t a = 0; a < 6; ++a) sum_of_products[a] += steps(products[a]);
     }
-    const double size = static_cast<double>(points.size());
-    std::array<double, 3> first{};
-    std::array<double, 6> second{};
-    for (std::size_t a = 0; a < 3; ++a) first[a] = static_cast<double>(sum[a]) / cell_steps / size;
+    MomentSums sums{static_cast<double>(points.size())};
+    for (std::size_t a = 0; a < 3; ++a) sums.first[a] = static_cast<double>(sum[a]) / cell_steps;
     for (std::size_t a = 0; a < 6; ++a)
-        second[a] = static_cast<double>(products[a]) / cell_steps / size;
-    CellMoments out;
-    for (std::size_t a = 0; a < 3; ++a) {
-        out.mean[a] = static_cast<float>(first[a]);
-        out.spread[a] = static_cast<float>(second[a] - first[a] * first[a]);
-    }
-    out.spread[3] = static_cast<float>(second[3] - first[0] * first[1]);
-    out.spread[4] = static_cast<float>(second[4] - first[0] * first[2]);
-    out.spread[5] = static_cast<float>(second[5] - first[1] * first[2]);
-    return out;
+        sums.second[a] = static_cast<double>(sum_of_products[a]) / cell_steps;
+    return sums.moments();
+}
+
+void CellGrid::set_index(std::size_t cell, const GridCell& at) {
+    x[cell] = static_cast<std::int32_t>(at[0]);
+    y[cell] = static_cast<std::int32_t>(at[1]);
+    z[cell] = static_cast<std::int32_t>(at[2]);
 }
 
 void CellGrid::set(std::size_t cell, const CellMoments& moments) {
@@ -87,55 +108,28 @@ CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uin
     coarse.cell_m = 2 * grid.cell_m;
     parent.assign(grid.size(), 0);
     if (grid.size() == 0) return coarse;
-    const auto halved = [](std::int32_t index) { return index >> 1; };
-    std::array<std::int64_t, 3> lowest{}, highest{};
-    const std::array<const std::vector<std::int32_t>*, 3> index{&grid.x, &grid.y, &grid.z};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto [low, high] = std::minmax_element(index[a]->begin(), index[a]->end());
-        lowest[a] = halved(*low);
-        highest[a] = halved(*high);
-    }
-    const CellPacking pack(lowest, highest);
-    std::vector<std::uint64_t> keys(grid.size());
-    threads.each(grid.size(), grid_chunk, [&](std::size_t i) {
-        keys[i] = pack(halved(grid.x[i]), halved(grid.y[i]), halved(grid.z[i]));
-    });
-    const KeyGroups groups = group_keys(keys);
+    const auto halved = [&](std::size_t i) {
+        return GridCell{grid.x[i] >> 1, grid.y[i] >> 1, grid.z[i] >> 1};
+    };
+    const KeyGroups groups = group_cells(grid.size(), halved, threads);
     coarse.resize(groups.size());
     threads.each(groups.size(), grid_chunk, [&](std::size_t cell) {
         const auto children = groups.group(cell);
-        coarse.x[cell] = halved(grid.x[children[0]]);
-        coarse.y[cell] = halved(grid.y[children[0]]);
-        coarse.z[cell] = halved(grid.z[children[0]]);
-        double sum = 0;
-        std::array<double, 3> first{};
-        std::array<double, 6> second{};
+        MomentSums sums;
         for (const std::uint32_t i : children) {
             parent[i] = static_cast<std::uint32_t>(cell);
             // A child's centre lies a quarter of a coarse cell off the parent's.
-            const std::array<double, 3> at{
-                0.5 * grid.mean[0][i] + ((grid.x[i] & 1) != 0 ? 0.25 : -0.25),
-                0.5 * grid.mean[1][i] + ((grid.y[i] & 1) != 0 ? 0.25 : -0.25),
-                0.5 * grid.mean[2][i] + ((grid.z[i] & 1) != 0 ? 0.25 : -0.25)};
-            const double w = grid.weight[i];
-            sum += w;
-            const std::array<double, 6> products{at[0] * at[0], at[1] * at[1], at[2] * at[2],
-                                                 at[0] * at[1], at[0] * at[2], at[1] * at[2]};
-            for (std::size_t a = 0; a < 3; ++a) first[a] += w * at[a];
-            for (std::size_t a = 0; a < 6; ++a)
-                second[a] += w * (products[a] + 0.25 * grid.spread[a][i]);
+            const Place index = grid.index(i);
+            std::array<double, 3> at{};
+            std::array<double, 6> spread{};
+            for (std::size_t a = 0; a < 3; ++a)
+                at[a] = 0.5 * grid.mean[a][i] + ((index[a] & 1) != 0 ? 0.25 : -0.25);
+            for (std::size_t a = 0; a < 6; ++a) spread[a] = 0.25 * grid.spread[a][i];
+            sums.add(grid.weight[i], at, spread);
         }
-        if (sum > 0) {
-            for (double& value : first) value /= sum;
-            for (double& value : second) value /= sum;
-        }
-        const std::array<double, 6> products{first[0] * first[0], first[1] * first[1],
-                                             first[2] * first[2], first[0] * first[1],
-                                             first[0] * first[2], first[1] * first[2]};
-        coarse.weight[cell] = static_cast<float>(sum);
-        for (std::size_t a = 0; a < 3; ++a) coarse.mean[a][cell] = static_cast<float>(first[a]);
-        for (std::size_t a = 0; a < 6; ++a)
-            coarse.spread[a][cell] = static_cast<float>(second[a] - products[a]);
+        coarse.set_index(cell, halved(children[0]));
+        coarse.weight[cell] = static_cast<float>(sums.weight);
+        coarse.set(cell, sums.moments());
     });
     return coarse;
 }
@@ -145,15 +139,9 @@ ColumnSweep::ColumnSweep(std::span<const std::int32_t> x, std::span<const std::i
     : keys_(x.size() + most_height, ~std::uint64_t{0}),
       height_(2 * static_cast<std::uint64_t>(radius) + 1) {
     if (x.empty()) return;
-    std::array<std::int64_t, 3> lowest{}, highest{};
-    const std::array<std::span<const std::int32_t>, 3> index{x, y, z};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto [low, high] = std::minmax_element(index[a].begin(), index[a].end());
-        lowest[a] = *low;
-        highest[a] = *high;
-    }
-    const CellPacking pack(lowest, highest, radius);
-    for (std::size_t i = 0; i < x.size(); ++i) keys_[i] = pack(x[i], y[i], z[i]);
+    const auto cell = [&](std::size_t i) { return GridCell{x[i], y[i], z[i]}; };
+    const CellPacking pack = CellPacking::of(x.size(), cell, radius);
+    for (std::size_t i = 0; i < x.size(); ++i) keys_[i] = pack(cell(i));
     for (int dx = -radius; dx <= radius; ++dx) {
         for (int dy = -radius; dy <= radius; ++dy) lowest_.push_back(pack.offset(dx, dy, -radius));
     }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/place.h"
 #include "core/thread_pool.h"
 #include "topple/cloud_view.h"
 
@@ -30,10 +31,24 @@ inline constexpr std::int64_t max_cells_per_axis = (std::int64_t{1} << 21) - 8;
 // lowest, highest: bounds of the cells that will be packed, highest - lowest < max_cells_per_axis.
 // Cells up to `reach` (3 at most) beyond the bounds can be packed too; and a key plus
 // offset(dx, dy, dz) is that of the cell so far away.
+using GridCell = std::array<std::int64_t, 3>;
 class CellPacking {
   public:
-    CellPacking(const std::array<std::int64_t, 3>& lowest,
-                const std::array<std::int64_t, 3>& highest, int reach = 0);
+    CellPacking(const GridCell& lowest, const GridCell& highest, int reach = 0);
+    // Of the cells cell_of(0) to cell_of(count - 1); there is one at least.
+    template <class CellOf>
+    static CellPacking of(std::size_t count, const CellOf& cell_of, int reach = 0) {
+        GridCell lowest = cell_of(0), highest = lowest;
+        for (std::size_t i = 1; i < count; ++i) {
+            const GridCell at = cell_of(i);
+            for (std::size_t a = 0; a < 3; ++a) {
+                lowest[a] = std::min(lowest[a], at[a]);
+                highest[a] = std::max(highest[a], at[a]);
+            }
+        }
+        return {lowest, highest, reach};
+    }
+    std::uint64_t operator()(const GridCell& at) const { return (*this)(at[0], at[1], at[2]); }
     std::uint64_t operator()(std::int64_t x, std::int64_t y, std::int64_t z) const {
         return offset(x - lowest_[0], y - lowest_[1], z - lowest_[2]);
     }
@@ -44,19 +59,36 @@ class CellPacking {
     }
 
   private:
-    std::array<std::int64_t, 3> lowest_{};
+    GridCell lowest_{};
     int shift_x_ = 0, shift_y_ = 0;
 };
+
+// Groups of equal cells, in the order of their keys; cell_of as of CellPacking::of().
+template <class CellOf>
+KeyGroups group_cells(std::size_t count, const CellOf& cell_of, ThreadPool& threads) {
+    constexpr std::uint64_t chunk = 1 << 13;
+    const CellPacking pack = CellPacking::of(count, cell_of);
+    std::vector<std::uint64_t> keys(count);
+    threads.each(count, chunk, [&](std::size_t i) { keys[i] = pack(cell_of(i)); });
+    return group_keys(keys);
+}
 
 // Mean and covariance (xx yy zz xy xz yz) of points in a cell, in cells, from its centre.
 struct CellMoments {
     std::array<float, 3> mean{};
     std::array<float, 6> spread{};
 };
+// The same of parts of a cell, of some weight and spread each.
+struct MomentSums {
+    double weight = 0;
+    std::array<double, 3> first{};
+    std::array<double, 6> second{};
+    void add(double w, const std::array<double, 3>& at, const std::array<double, 6>& spread);
+    CellMoments moments() const;
+};
 // Whatever the order of the points. at: the cell's index.
 CellMoments moments_of(const std::array<FloatColumn, 3>& cloud,
-                       std::span<const std::uint32_t> points, const std::array<std::int32_t, 3>& at,
-                       double cell_m);
+                       std::span<const std::uint32_t> points, const Place& at, double cell_m);
 
 // The occupied cells of a cubic grid, sorted by x, then y, then z, and the moments of what is in
 // them. Lengths in cells, relative to each cell's centre, so that floats do.
@@ -68,17 +100,19 @@ struct CellGrid {
     std::array<std::vector<float>, 6> spread;  // covariance xx yy zz xy xz yz, cells^2
     std::size_t size() const { return x.size(); }
     void resize(std::size_t count);
-    std::array<std::int32_t, 3> index(std::size_t cell) const {
-        return {x[cell], y[cell], z[cell]};
-    }
+    Place index(std::size_t cell) const { return {x[cell], y[cell], z[cell]}; }
+    void set_index(std::size_t cell, const GridCell& at);
     void set(std::size_t cell, const CellMoments& moments);
 };
 
 // The grid of twice the cell size: cells merged by weight. parent: coarse cell of each fine one.
 CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uint32_t>& parent);
 
-// Neighbouring columns of sorted cells: for each cell and each (dx, dy) within the radius (3 at
-// most), the run of occupied cells within the radius in z.
+// The neighbourhood that a plane is fitted to, cells per axis to either side.
+inline constexpr int plane_radius = 2;
+
+// Neighbouring columns of sorted cells: for each cell and each (dx, dy) within the radius
+// (plane_radius at most), the run of occupied cells within the radius in z.
 class ColumnSweep {
   public:
     ColumnSweep(std::span<const std::int32_t> x, std::span<const std::int32_t> y,
@@ -89,22 +123,20 @@ class ColumnSweep {
     // The cells must ascend.
     template <class Cells, class Visit>
     void run(std::size_t first, std::size_t last, const Cells& cells, const Visit& visit) const;
-    // The same for one column after the other, which is faster.
+    // The same for one column after the other, which is faster; of plane_radius alone.
     template <class Cells, class Visit>
     void run_by_column(std::size_t first, std::size_t last, const Cells& cells,
                        const Visit& visit) const;
     std::size_t columns() const { return lowest_.size(); }
 
   private:
-    static constexpr std::size_t most_columns = 49, most_height = 7;
+    static constexpr std::size_t most_height = 2 * plane_radius + 1,
+                                 most_columns = most_height * most_height;
     std::vector<std::uint64_t> keys_;    // most_height more than cells, those above all
     std::vector<std::uint64_t> lowest_;  // of each column's run, relative to the cell's key
     std::uint64_t height_ = 0;           // keys of a run
     std::size_t first_at(std::uint64_t key) const;
     std::size_t advance(std::size_t at, std::uint64_t key) const;
-    template <std::size_t height, class Cells, class Visit>
-    void run_columns(std::size_t first, std::size_t last, const Cells& cells,
-                     const Visit& visit) const;
 };
 
 // A sweep's runs for ascending cells, a plane of cells.size() entries for each column: the first
@@ -155,9 +187,11 @@ void ColumnSweep::run(std::size_t first, std::size_t last, const Cells& cells,
     }
 }
 
-template <std::size_t height, class Cells, class Visit>
-void ColumnSweep::run_columns(std::size_t first, std::size_t last, const Cells& cells,
-                              const Visit& visit) const {
+template <class Cells, class Visit>
+void ColumnSweep::run_by_column(std::size_t first, std::size_t last, const Cells& cells,
+                                const Visit& visit) const {
+    constexpr std::size_t height = most_height;
+    if (first == last) return;
     for (std::size_t c = 0; c < lowest_.size(); ++c) {
         std::size_t lo = first_at(keys_[cells(first)] + lowest_[c]);
         for (std::size_t k = first; k < last; ++k) {
@@ -171,15 +205,6 @@ void ColumnSweep::run_columns(std::size_t first, std::size_t last, const Cells& 
             visit(k, c, lo, hi);
         }
     }
-}
-
-template <class Cells, class Visit>
-void ColumnSweep::run_by_column(std::size_t first, std::size_t last, const Cells& cells,
-                                const Visit& visit) const {
-    if (first == last) return;
-    if (height_ == 3) run_columns<3>(first, last, cells, visit);
-    if (height_ == 5) run_columns<5>(first, last, cells, visit);
-    if (height_ == 7) run_columns<7>(first, last, cells, visit);
 }
 
 }  // namespace topple::geometry

@@ -25,8 +25,8 @@ Borders borders(const Surfels& s, const std::vector<std::int32_t>& label,
     for (std::size_t n = 0; n < s.size(); ++n) {
         const std::int32_t a = label[n];
         if (a < 0 || solid[a]) continue;
-        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
-            const std::int32_t b = label[s.neighbours[k]];
+        for (const std::uint32_t j : s.around(n)) {
+            const std::int32_t b = label[j];
             if (b >= 0 && solid[b]) ++out[{a, b}];
         }
     }
@@ -45,8 +45,7 @@ std::vector<std::uint32_t> steps_from_solids(const Surfels& s,
     }
     for (std::size_t head = 0; head < queue.size(); ++head) {
         const std::uint32_t n = queue[head];
-        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
-            const std::uint32_t m = s.neighbours[k];
+        for (const std::uint32_t m : s.around(n)) {
             if (is_solid(m) || steps[m] > 0) continue;
             steps[m] = steps[n] + 1;
             queue.push_back(m);
@@ -77,8 +76,7 @@ void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& 
             const std::uint32_t n = piece[head];
             furthest = std::max(furthest, steps[n]);
             if (label[n] >= 0) fragments.insert(root(label[n]));
-            for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
-                const std::uint32_t m = s.neighbours[k];
+            for (const std::uint32_t m : s.around(n)) {
                 if (seen[m] || steps[m] < beyond_crease) continue;
                 seen[m] = true;
                 piece.push_back(m);
@@ -131,8 +129,7 @@ void keep_small_things(const Surfels& s, std::vector<bool>& solid, const Primiti
         if (members[p].size() < least_region) continue;
         std::set<std::int32_t> around;
         for (const std::uint32_t n : members[p])
-            for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
-                const std::uint32_t m = s.neighbours[k];
+            for (const std::uint32_t m : s.around(n)) {
                 if (label[m] >= 0 && solid[label[m]] && faces.label[m] >= 0)
                     around.insert(faces.label[m]);
             }
@@ -152,8 +149,8 @@ bool grow_labels(const Surfels& s, std::vector<std::int32_t>& label) {
     for (std::size_t n = 0; n < s.size(); ++n) {
         if (label[n] >= 0) continue;
         std::map<std::int32_t, unsigned> votes;
-        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
-            const std::int32_t l = label[s.neighbours[k]];
+        for (const std::uint32_t j : s.around(n)) {
+            const std::int32_t l = label[j];
             if (l >= 0) ++votes[l];
         }
         unsigned most = 0;

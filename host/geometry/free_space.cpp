@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "core/scene_bounds.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
@@ -39,22 +38,11 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
             lowest = std::min(lowest, viewpoint_of_point[i]);
         }
     }
-    cell_m_ = surfels_per_cell * s.cell_m;
-    const Bounds<float> bounds = scene_bounds<float>({s.x, s.y, s.z}, static_cast<float>(cell_m_));
-    low_ = {bounds.low[0], bounds.low[1], bounds.low[2]};
-    const Eigen::Vector3d extent =
-        Eigen::Vector3d(bounds.high[0], bounds.high[1], bounds.high[2]) - low_;
-    const auto cells = [&] {
-        double all = 1;
-        for (int a = 0; a < 3; ++a) all *= std::floor(extent[a] / cell_m_) + 1;
-        return all;
-    };
-    while (cells() > most_free_cells) cell_m_ *= 1.25;
-    for (int a = 0; a < 3; ++a) size_[a] = static_cast<std::int64_t>(extent[a] / cell_m_) + 1;
-    cell_.assign(static_cast<std::size_t>(cells()), 0);
-    const auto is_stray = [&](std::size_t i) { return !bounds.contains(s.x[i], s.y[i], s.z[i]); };
+    grid_ = CoarseGrid({s.x, s.y, s.z}, surfels_per_cell * s.cell_m, 1.25, most_free_cells);
+    cell_.assign(grid_.size(), 0);
+    const auto is_stray = [&](std::size_t i) { return grid_.is_stray(s.x[i], s.y[i], s.z[i]); };
     for (std::size_t i = 0; i < s.size(); ++i)
-        if (!is_stray(i)) cell_[index(in_cells(position(s, i)))] = occupied;
+        if (!is_stray(i)) cell_[grid_.cell_of(position(s, i))] = occupied;
     const std::size_t step = s.size() / most_lines + 1;
     threads.each((s.size() + step - 1) / step, 256, [&](std::size_t line) {
         const std::size_t i = line * step;
@@ -69,9 +57,9 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
     // A cell beside a surface may reach into the solid behind it.
     threads.each(s.size(), space_chunk, [&](std::size_t i) {
         for (int a = 0; a < 3; ++a)
-            for (const double side : {-cell_m_, cell_m_}) {
+            for (const double side : {-cell_m(), cell_m()}) {
                 const std::int64_t at =
-                    index(in_cells(position(s, i) + side * Eigen::Vector3d::Unit(a)));
+                    grid_.cell_of(position(s, i) + side * Eigen::Vector3d::Unit(a));
                 if (at < 0) continue;
                 const std::atomic_ref beside(cell_[at]);
                 if (beside.load(std::memory_order_relaxed) == is_free)
@@ -80,21 +68,13 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
     });
 }
 
-std::int64_t FreeSpace::index(const Eigen::Vector3d& cells) const {
-    for (int a = 0; a < 3; ++a)
-        if (!(cells[a] >= 0 && cells[a] < static_cast<double>(size_[a]))) return -1;
-    return (static_cast<std::int64_t>(cells[0]) * size_[1] + static_cast<std::int64_t>(cells[1])) *
-               size_[2] +
-           static_cast<std::int64_t>(cells[2]);
-}
-
 void FreeSpace::cross(const Eigen::Vector3d& eye, const Eigen::Vector3d& p) {
     const Eigen::Vector3d d = p - eye;
     const double length = d.norm();
-    const Eigen::Vector3d from = in_cells(eye), along = d / length / cell_m_;
+    const Eigen::Vector3d from = grid_.in_cells(eye), along = d / length / cell_m();
     std::vector<std::size_t> cells;
-    for (double t = length - stop_cells * cell_m_; t > 0; t -= 0.5 * cell_m_) {
-        const std::int64_t at = index(from + t * along);
+    for (double t = length - stop_cells * cell_m(); t > 0; t -= 0.5 * cell_m()) {
+        const std::int64_t at = grid_.cell_at(from + t * along);
         if (at < 0) continue;
         const auto cell = static_cast<std::size_t>(at);
         if (std::atomic_ref(cell_[cell]).load(std::memory_order_relaxed) == occupied) return;
@@ -109,17 +89,17 @@ void FreeSpace::cross(const Eigen::Vector3d& eye, const Eigen::Vector3d& p) {
 }
 
 bool FreeSpace::at(const Eigen::Vector3d& p) const {
-    const std::int64_t i = known() ? index(in_cells(p)) : -1;
+    const std::int64_t i = known() ? grid_.cell_of(p) : -1;
     return i >= 0 && cell_[i] == is_free;
 }
 
 bool FreeSpace::between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
     if (!known()) return false;
-    const double steps = std::ceil(2 * (b - a).norm() / cell_m_);
-    const Eigen::Vector3d from = in_cells(a), step = (in_cells(b) - from) / steps;
+    const double steps = std::ceil(2 * (b - a).norm() / cell_m());
+    const Eigen::Vector3d from = grid_.in_cells(a), step = (grid_.in_cells(b) - from) / steps;
     int free = 0;
     for (double k = 1; k < steps; ++k) {
-        const std::int64_t at = index(from + k * step);
+        const std::int64_t at = grid_.cell_at(from + k * step);
         free += at >= 0 && cell_[at] == is_free;
         if (free >= least_free) return true;
     }

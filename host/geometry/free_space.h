@@ -2,12 +2,12 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/thread_pool.h"
+#include "geometry/coarse_grid.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -28,20 +28,16 @@ class FreeSpace {
               std::span<const std::uint32_t> viewpoint_of_point, ThreadPool& threads);
 
     bool known() const { return !cell_.empty(); }
-    double cell_m() const { return cell_m_; }
+    double cell_m() const { return grid_.cell_m(); }
     // Whether the cell around a point is free.
     bool at(const Eigen::Vector3d& p) const;
     // Whether the straight line between two points crosses free space.
     bool between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   private:
-    Eigen::Vector3d in_cells(const Eigen::Vector3d& p) const { return (p - low_) / cell_m_; }
-    std::int64_t index(const Eigen::Vector3d& cells) const;  // -1 outside of the grid
     void cross(const Eigen::Vector3d& eye, const Eigen::Vector3d& p);
 
-    double cell_m_ = 0;
-    Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
-    std::array<std::int64_t, 3> size_{};
+    CoarseGrid grid_;
     std::vector<std::uint8_t> cell_;  // what is known of each
 };
 

@@ -81,9 +81,9 @@ struct SideStep {
     std::size_t surfels = 0;
 };
 
-// Rows of equations in so many unknowns.
+// Equations in so many unknowns, a row each.
 template <int unknowns>
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, unknowns>;
+using Equations = Eigen::Matrix<double, Eigen::Dynamic, unknowns>;
 template <int unknowns>
 using Fit = Eigen::Matrix<double, unknowns, 1>;
 
@@ -91,7 +91,7 @@ using Fit = Eigen::Matrix<double, unknowns, 1>;
 template <int unknowns>
 class SideFit {
   public:
-    SideFit(const Rows<unknowns>& rows, const Eigen::VectorXd& out)
+    SideFit(const Equations<unknowns>& rows, const Eigen::VectorXd& out)
         : rows_(rows),
           out_(out),
           normal_(rows.transpose() * rows),
@@ -107,7 +107,7 @@ class SideFit {
     }
 
   private:
-    const Rows<unknowns>& rows_;
+    const Equations<unknowns>& rows_;
     const Eigen::VectorXd& out_;
     Eigen::Matrix<double, unknowns, unknowns> normal_;
     Fit<unknowns> right_;
@@ -155,8 +155,8 @@ std::optional<SideStep> step_at(const LedgeSide& side, double height, double cel
         covered_by_both(parts, first, last, cell_m) < least_side_covered)
         return std::nullopt;
     const auto count = static_cast<Eigen::Index>(parts[0].size() + parts[1].size());
-    Rows<5> two(count, 5);
-    Rows<3> one(count, 3);
+    Equations<5> two(count, 5);
+    Equations<3> one(count, 3);
     Eigen::VectorXd out(count);
     const double middle = 0.5 * (first + last);
     Eigen::Index n = 0;
@@ -278,8 +278,9 @@ std::optional<double> find_ledge(const Surfels& s, std::span<const std::uint32_t
 }
 
 std::vector<Ledge> ledges_between(const Surfels& s, const PrimitiveSet& primitives,
-                                  const Eigen::Vector3d& up) {
+                                  const Vec3& upwards) {
     constexpr std::size_t least_pairs = 12;
+    const Eigen::Vector3d up(upwards[0], upwards[1], upwards[2]);
     struct Sum {
         double height = 0;
         std::size_t pairs = 0;
@@ -287,8 +288,7 @@ std::vector<Ledge> ledges_between(const Surfels& s, const PrimitiveSet& primitiv
     std::map<std::pair<std::int32_t, std::int32_t>, Sum> sums;  // above, below
     const std::vector<std::int32_t>& label = primitives.label;
     for (std::size_t n = 0; n < s.size(); ++n) {
-        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
-            const std::uint32_t m = s.neighbours[k];
+        for (const std::uint32_t m : s.around(n)) {
             if (label[n] < 0 || label[m] < 0 || label[n] == label[m]) continue;
             const double own = up.dot(position(s, n)), other = up.dot(position(s, m));
             if (own <= other || !ledge_between(primitives, n, m)) continue;

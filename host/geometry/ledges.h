@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/ledge.h"
 #include "geometry/segmentation.h"
 #include "geometry/surfels.h"
 
@@ -21,13 +22,8 @@ namespace topple::geometry {
 std::optional<double> find_ledge(const Surfels& surfels, std::span<const std::uint32_t> members,
                                  const Eigen::Vector3d& up);
 
-// A ledge between two primitives: one stands on the other.
-struct Ledge {
-    std::int32_t above = -1, below = -1;  // primitives
-    double height_m = 0;                  // along up, from the origin
-};
-// Those that were cut (merge_convex()), sorted by `above`.
+// Those between primitives that were cut (merge_convex()), sorted by `above`.
 std::vector<Ledge> ledges_between(const Surfels& surfels, const PrimitiveSet& primitives,
-                                  const Eigen::Vector3d& up);
+                                  const Vec3& up);
 
 }  // namespace topple::geometry

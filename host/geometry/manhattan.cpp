@@ -31,7 +31,7 @@ struct Triple {
 // products of the others, which converges to the polar factor for small deviations.
 std::array<Vec3, 3> orthogonalise(std::array<Vec3, 3> a) {
     for (int round = 0; round < 20; ++round) {
-        if (dot(cross(a[0], a[1]), a[2]) < 0) a[2] = {-a[2][0], -a[2][1], -a[2][2]};
+        if (dot(cross(a[0], a[1]), a[2]) < 0) a[2] = opposite(a[2]);
         std::array<Vec3, 3> next{};
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 c = unit_or_zero(cross(a[(i + 1) % 3], a[(i + 2) % 3]));
@@ -73,18 +73,21 @@ Triple best_triple(const WeightedNormals& normals, const std::vector<Vec3>& dire
     return best;
 }
 
+// The direction of v at right angles to up.
+Vec3 level_part(const Vec3& v, const Vec3& up) {
+    return unit_or_zero(along(v, -dot(v, up), up));
+}
+
 // Horizontal axes: the fourfold direction that most upright surfaces follow, found on the normals'
 // azimuth and refined; share: how much of the upright surface follows it.
 Vec3 horizontal_axis(const WeightedNormals& normals, const Vec3& up, const Vec3& guess,
                      double& share) {
-    const Vec3 e1 =
-        unit_or_zero({guess[0] - dot(guess, up) * up[0], guess[1] - dot(guess, up) * up[1],
-                      guess[2] - dot(guess, up) * up[2]});
+    const Vec3 e1 = level_part(guess, up);
     const Vec3 e2 = cross(up, e1);
     FourfoldHistogram histogram;
     std::vector<std::array<double, 2>> azimuth;  // angle modulo 90 degrees, weight
     for (std::size_t i = 0; i < normals.size(); ++i) {
-        const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
+        const Vec3 n = normals[i];
         if (std::abs(dot(n, up)) > std::sin(near_degrees * std::numbers::pi / 180)) continue;
         double angle = std::atan2(dot(n, e2), dot(n, e1)) * 180 / std::numbers::pi;
         angle -= 90 * std::floor(angle / 90);
@@ -121,17 +124,14 @@ Vec3 horizontal_axis(const WeightedNormals& normals, const Vec3& up, const Vec3&
 Vec3 nearest_to_x(const Vec3& axis, const Vec3& up) {
     const Vec3 side = cross(up, axis);
     Vec3 best = axis;
-    for (const Vec3& v :
-         {Vec3{-axis[0], -axis[1], -axis[2]}, side, Vec3{-side[0], -side[1], -side[2]}}) {
+    for (const Vec3& v : {opposite(axis), side, opposite(side)})
         if (v[0] > best[0] + 1e-9) best = v;
-    }
     return best;
 }
 
 Vec3 any_horizontal(const Vec3& up) {
     const Vec3 e = std::abs(up[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    return unit_or_zero(
-        {e[0] - dot(e, up) * up[0], e[1] - dot(e, up) * up[1], e[2] - dot(e, up) * up[2]});
+    return level_part(e, up);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
 
 #include "core/ranked.h"
 #include "device/queue.h"
@@ -39,8 +41,7 @@ double weight_near(const WeightedNormals& normals, const Vec3& axis, double degr
     const double least = std::cos(degrees * std::numbers::pi / 180);
     double sum = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
-        const double d = normals.x[i] * axis[0] + normals.y[i] * axis[1] + normals.z[i] * axis[2];
-        if (std::abs(d) >= least) sum += normals.weight[i];
+        if (std::abs(dot(normals[i], axis)) >= least) sum += normals.weight[i];
     }
     return sum;
 }
@@ -52,15 +53,12 @@ Vec3 refine_axis(const WeightedNormals& normals, const Vec3& axis) {
         for (int round = 0; round < 5; ++round) {
             Vec3 sum{};
             for (std::size_t i = 0; i < normals.size(); ++i) {
-                const double d =
-                    normals.x[i] * now[0] + normals.y[i] * now[1] + normals.z[i] * now[2];
+                const double d = dot(normals[i], now);
                 const double off = 1 - d * d;  // sin^2 of the angle
                 if (off >= widest) continue;
                 const double taper = 1 - off / widest;
                 const double w = normals.weight[i] * taper * taper * (d < 0 ? -1 : 1);
-                sum[0] += w * normals.x[i];
-                sum[1] += w * normals.y[i];
-                sum[2] += w * normals.z[i];
+                sum = along(sum, w, normals[i]);
             }
             const Vec3 next = unit_or_zero(sum);
             if (next == Vec3{0, 0, 0}) return now;
@@ -104,10 +102,10 @@ std::vector<Vec3> seeds(const WeightedNormals& normals, unsigned k) {
     bins.weight.resize(bins.sum.size());
     for (std::size_t i = 0; i < normals.size(); ++i) {
         bool negative = false;
-        const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
+        const Vec3 n = normals[i];
         const std::size_t at = bin_of(n, negative);
         const double w = normals.weight[i] * (negative ? -1 : 1);
-        for (std::size_t a = 0; a < 3; ++a) bins.sum[at][a] += w * n[a];
+        bins.sum[at] = along(bins.sum[at], w, n);
         bins.weight[at] += normals.weight[i];
     }
     std::vector<std::size_t> used;
@@ -211,9 +209,8 @@ NormalClusters cluster_normals(device::Device& device, const Surfels& surfels, u
         if (still) break;
     }
     std::vector<std::size_t> order(axes.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return sums[a][3] > sums[b][3]; });
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return sums[i][3]; });
     for (const std::size_t i : order) {
         result.direction.push_back(axes[i]);
         result.weight.push_back(sums[i][3]);

@@ -19,6 +19,7 @@ struct WeightedNormals {
     std::vector<std::uint32_t> surfel;
     double total = 0;  // sum of weight
     std::size_t size() const { return x.size(); }
+    Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 // At most about `most` of them, evenly over the surfels.
 WeightedNormals weigh_normals(const Surfels& surfels, std::size_t most);

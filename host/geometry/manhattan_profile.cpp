@@ -30,7 +30,7 @@ class Slabs {
             at_.push_back(dot({s.x[k], s.y[k], s.z[k]}, direction));
             low = std::min(low, at_.back());
             high = std::max(high, at_.back());
-            facing_.push_back(dot({normals.x[n], normals.y[n], normals.z[n]}, direction));
+            facing_.push_back(dot(normals[n], direction));
         }
         const double edge = slab_cells * s.cell_m;
         all_.resize(static_cast<std::size_t>((high - low) / edge) + 2);
@@ -122,7 +122,7 @@ double turned_share(const WeightedNormals& normals, const LargePlanes& planes, c
     const double most_sine = std::sin(along_degrees * std::numbers::pi / 180);
     FourfoldHistogram all, apart;  // apart: in no large plane
     for (std::size_t i = 0; i < normals.size(); ++i) {
-        const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
+        const Vec3 n = normals[i];
         if (std::abs(dot(n, axis)) >= most_sine) continue;
         const double degrees = std::atan2(dot(n, e2), dot(n, e1)) * 180 / std::numbers::pi + 360;
         all.add(degrees, normals.weight[i]);
@@ -156,8 +156,8 @@ Profile profile_along(const Surfels& s, const WeightedNormals& normals, const La
     std::vector<double> height(normals.size()), facing(normals.size());
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const std::uint32_t k = normals.surfel[i];
-        height[i] = s.x[k] * axis[0] + s.y[k] * axis[1] + s.z[k] * axis[2];
-        facing[i] = normals.x[i] * axis[0] + normals.y[i] * axis[1] + normals.z[i] * axis[2];
+        height[i] = dot({s.x[k], s.y[k], s.z[k]}, axis);
+        facing[i] = dot(normals[i], axis);
     }
     const auto [lowest, highest] = std::ranges::minmax_element(height);
     const double low = *lowest, high = *highest;

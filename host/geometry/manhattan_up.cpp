@@ -199,8 +199,8 @@ bool up_from_uprights(const WeightedNormals& normals, Vec3& up) {
         Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
         double weight = 0;
         for (std::size_t i = 0; i < normals.size(); ++i) {
-            const Eigen::Vector3d n(normals.x[i], normals.y[i], normals.z[i]);
-            if (std::abs(n[0] * up[0] + n[1] * up[1] + n[2] * up[2]) > widest) continue;
+            if (std::abs(dot(normals[i], up)) > widest) continue;
+            const Eigen::Vector3d n(normals[i].data());
             sum += normals.weight[i] * n * n.transpose();
             weight += normals.weight[i];
         }
@@ -222,7 +222,7 @@ std::optional<Vec3> implied_camera(const WeightedNormals& normals) {
     double size = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const double w = normals.weight[i];
-        sum = {sum[0] + w * normals.x[i], sum[1] + w * normals.y[i], sum[2] + w * normals.z[i]};
+        sum = along(sum, w, normals[i]);
         size += w * std::abs(normals.z[i]);
     }
     const bool ahead = sum[2] < -camera_facing * size && unit_or_zero(sum)[2] < -camera_axis_cos;

@@ -56,8 +56,8 @@ std::uint32_t set_back(const Surfels& s, const Regions& regions, std::uint32_t s
         const std::size_t ring_end = reached.list().size();
         for (; head < ring_end; ++head) {
             const std::uint32_t i = reached.list()[head];
-            for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e)
-                if (regions.label[s.neighbours[e]] == label) reached.add(s.neighbours[e]);
+            for (const std::uint32_t j : s.around(i))
+                if (regions.label[j] == label) reached.add(j);
         }
     }
     std::uint32_t best = start;

@@ -233,8 +233,7 @@ class Cutter {
         std::vector<CutEdge> out;
         for (std::uint32_t m = 0; m < members.size(); ++m) {
             const std::uint32_t i = members[m];
-            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
-                const std::uint32_t j = s_.neighbours[e];
+            for (const std::uint32_t j : s_.around(i)) {
                 if (j > i && label(j) == label(i))
                     out.push_back({m, place_[j], area[m] * area[place_[j]] * weight(i, j)});
             }
@@ -270,8 +269,7 @@ class Cutter {
     // Cells of its face's area that a surfel stands for: in a single layer it has eight neighbours.
     double covered(std::uint32_t i) const {
         int neighbours = 0;
-        for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e)
-            neighbours += label(s_.neighbours[e]) == label(i);
+        for (const std::uint32_t j : s_.around(i)) neighbours += label(j) == label(i);
         return neighbours > 8 ? 8.0 / neighbours : 1.0;
     }
 

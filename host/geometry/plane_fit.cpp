@@ -16,7 +16,8 @@ namespace topple::geometry {
 namespace {
 
 constexpr std::size_t cell_planes = 10, fit_planes_count = 6, mean_planes = 8;
-constexpr float least_cosine = 0.8f;  // of the angle between normals of one surface
+constexpr float reach = plane_radius + 0.5f;  // cells
+constexpr float least_cosine = 0.8f;          // of the angle between normals of one surface
 constexpr std::uint32_t no_query = ~0u;
 constexpr std::uint64_t query_chunk = 1 << 15;  // queries handed to a thread at once
 // Queries or cells of a tile, where a device takes as many: the tables have 100 bytes for each.
@@ -34,17 +35,6 @@ device::Buffer<float> upload_planes(device::Device& device, const Planes& planes
         to += last - first;
     }
     return buffer;
-}
-
-void resize(PlaneFit& fit, std::size_t count) {
-    for (auto& plane : fit.normal) plane.resize(count);
-    fit.rms.resize(count);
-    fit.offset.resize(count);
-    fit.used.resize(count);
-}
-
-std::array<std::span<float>, fit_planes_count> planes_of(PlaneFit& fit) {
-    return {fit.normal[0], fit.normal[1], fit.normal[2], fit.rms, fit.offset, fit.used};
 }
 
 }  // namespace
@@ -65,13 +55,11 @@ struct PlaneFitter::OnDevice {
     device::Buffer<float> query;
 };
 
-PlaneFitter::PlaneFitter(device::Device& device, const CellGrid& grid, PlaneQueries queries,
-                         int radius)
+PlaneFitter::PlaneFitter(device::Device& device, const CellGrid& grid, PlaneQueries queries)
     : device_(device),
       grid_(grid),
       queries_(std::move(queries)),
-      radius_(radius),
-      sweep_(grid.x, grid.y, grid.z, radius) {
+      sweep_(grid.x, grid.y, grid.z, plane_radius) {
     if (std::is_sorted(queries_.cell.begin(), queries_.cell.end())) {
         order_.resize(queries_.cell.size());
         std::iota(order_.begin(), order_.end(), 0u);
@@ -85,13 +73,12 @@ PlaneFitter::PlaneFitter(device::Device& device, const CellGrid& grid, PlaneQuer
 PlaneFitter::~PlaneFitter() = default;
 
 std::vector<PlaneFitter::Tile> PlaneFitter::make_tiles() const {
-    const auto side = static_cast<std::size_t>(2 * radius_ + 1);
     const std::uint64_t binding = device_.info().limits.max_binding_bytes;
     // The packed columns leave 28 bits for the cell.
     const std::size_t most_halo =
         std::min<std::size_t>(binding / (4 * cell_planes), (1u << 28) - 1);
     const std::size_t most_queries =
-        std::clamp<std::size_t>(binding / (4 * side * side), 1, preferred_tile);
+        std::clamp<std::size_t>(binding / (4 * sweep_.columns()), 1, preferred_tile);
     const auto lower = [&](std::int64_t x) {
         return static_cast<std::size_t>(
             std::lower_bound(grid_.x.begin(), grid_.x.end(), x,
@@ -115,8 +102,8 @@ std::vector<PlaneFitter::Tile> PlaneFitter::make_tiles() const {
                                                    std::to_string(binding) +
                                                    " bytes; use a larger ParseOptions::voxel_m");
             }
-            tile = {first, first + count, lower(std::int64_t{grid_.x[cell_[first]]} - radius_),
-                    lower(std::int64_t{grid_.x[cell_[first + count - 1]]} + radius_ + 1)};
+            tile = {first, first + count, lower(std::int64_t{grid_.x[cell_[first]]} - plane_radius),
+                    lower(std::int64_t{grid_.x[cell_[first + count - 1]]} + plane_radius + 1)};
             if (tile.halo_last - tile.halo_first <= most_halo) break;
         }
         tiles.push_back(tile);
@@ -162,7 +149,6 @@ void PlaneFitter::fit_tile(const Tile& tile, const PlanePrior& prior, PlaneFit& 
                                tile.halo_last, "prior")
                : device::Buffer<float>(device_, 1, "prior");
     const device::Buffer<float> d_fit(device_, fit_planes_count * count, "fit");
-    const float reach = static_cast<float>(radius_) + 0.5f;
     device::Queue queue(device_);
     queue.add<kernels::VoxelNormals>(
         count,
@@ -175,21 +161,21 @@ void PlaneFitter::fit_tile(const Tile& tile, const PlanePrior& prior, PlaneFit& 
          .fit = d_fit},
         {.query_count = static_cast<std::uint32_t>(count),
          .cell_count = static_cast<std::uint32_t>(tile.halo_last - tile.halo_first),
-         .radius = radius_,
+         .radius = plane_radius,
          .inverse_reach2 = 1.0f / (reach * reach),
          .use_prior = guided ? 1u : 0u});
     queue.run();
     const std::vector<float> out = d_fit.download();
-    const auto planes = planes_of(fit);
+    const auto columns = fit.columns();
     device_.threads().each(count, query_chunk, [&](std::size_t i) {
         for (std::size_t a = 0; a < fit_planes_count; ++a)
-            planes[a][order_[tile.first + i]] = out[a * count + i];
+            (*columns[a])[order_[tile.first + i]] = out[a * count + i];
     });
 }
 
 PlaneFit PlaneFitter::fit(const PlanePrior& prior) {
     PlaneFit fit;
-    resize(fit, cell_.size());
+    fit.resize(cell_.size());
     for (const Tile& tile : tiles_) fit_tile(tile, prior, fit);
     return fit;
 }
@@ -214,7 +200,6 @@ void PlaneFitter::mean_tile(const Tile& tile, std::span<const std::uint32_t> que
     });
     const device::Buffer<float> d_planes(device_, std::span<const float>(planes), "planes"),
         d_offsets(device_, count, "offsets");
-    const float reach = static_cast<float>(radius_) + 0.5f;
     device::Queue queue(device_);
     queue.add<kernels::PlaneMean>(count,
                                   {.planes = d_planes,
@@ -224,7 +209,7 @@ void PlaneFitter::mean_tile(const Tile& tile, std::span<const std::uint32_t> que
                                    .offsets = d_offsets},
                                   {.query_count = static_cast<std::uint32_t>(count),
                                    .cell_count = static_cast<std::uint32_t>(cells),
-                                   .radius = radius_,
+                                   .radius = plane_radius,
                                    .reach2 = reach * reach,
                                    .least_cosine = least_cosine});
     queue.run();

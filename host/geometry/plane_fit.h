@@ -24,6 +24,18 @@ struct PlaneFit {
     std::vector<float> rms;                    // of the neighbourhood about the plane, cells
     std::vector<float> offset;  // from the query to the plane along the normal, cells
     std::vector<float> used;    // cells that took part
+
+    std::size_t size() const { return rms.size(); }
+    bool has_plane(std::size_t q) const {
+        return normal[0][q] != 0 || normal[1][q] != 0 || normal[2][q] != 0;
+    }
+    // The arrays, in this order.
+    std::array<std::vector<float>*, 6> columns() {
+        return {&normal[0], &normal[1], &normal[2], &rms, &offset, &used};
+    }
+    void resize(std::size_t count) {
+        for (std::vector<float>* column : columns()) column->resize(count);
+    }
 };
 
 // Oriented normals of the grid's cells from an earlier fit, or empty: see kernel voxel_normals.
@@ -39,10 +51,8 @@ PlaneQueries queries_at_means(const CellGrid& grid);
 // them than fits a binding or some 200 MB; then only the last one is kept.
 class PlaneFitter {
   public:
-    // radius: of the neighbourhood, cells per axis, 1 to 3. Throws Error(device) where not even one
-    // layer of cells fits a binding.
-    PlaneFitter(device::Device& device, const CellGrid& grid, PlaneQueries queries,
-                int radius = default_radius);
+    // Throws Error(device) where not even one layer of cells fits a binding.
+    PlaneFitter(device::Device& device, const CellGrid& grid, PlaneQueries queries);
     ~PlaneFitter();
     PlaneFit fit(const PlanePrior& prior);
     // From each query along its normal to the surface, in cells (kernel plane_mean). The plane that
@@ -52,8 +62,6 @@ class PlaneFitter {
     // second order, while one alone shrinks what is round. Planes that face elsewhere don't count.
     // fit: of these queries, of which no two may be in one cell.
     std::vector<float> mean_offsets(const PlaneFit& fit);
-
-    static constexpr int default_radius = 2;
 
   private:
     // The queries [first, last) by ascending cell, and the cells [halo_first, halo_last) that they
@@ -73,7 +81,6 @@ class PlaneFitter {
     PlaneQueries queries_;
     std::vector<std::uint32_t> order_;  // of the queries, by ascending cell
     std::vector<std::uint32_t> cell_;   // of each in that order
-    int radius_;
     ColumnSweep sweep_;
     std::vector<Tile> tiles_;
     const Tile* prepared_tile_ = nullptr;

@@ -56,8 +56,7 @@ void RegionFacts::find_borders(const std::vector<std::int32_t>& changed) {
     std::vector<Touch> touches;
     for (const std::int32_t a : changed)
         for (const std::uint32_t i : cuts_.members[a])
-            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
-                const std::uint32_t j = s_.neighbours[e];
+            for (const std::uint32_t j : s_.around(i)) {
                 const std::int32_t b = label[j];
                 if (b > a) touches.push_back({a, b, i, j});
                 if (b >= 0 && b < a && !among[b]) touches.push_back({b, a, j, i});

@@ -37,7 +37,6 @@ struct Regions {
     std::vector<Region> regions;
 };
 Regions split(const Surfels& surfels, ThreadPool& threads);
-Regions split(const Surfels& surfels);  // on threads of its own, one per core
 
 // The cuts that a region lies beside, and on which side of each.
 using CutSides = std::vector<std::pair<std::uint32_t, bool>>;

@@ -35,18 +35,14 @@ SideVotes::SideVotes(const Surfels& surfels, std::span<const float> radii_m, Thr
       side_(surfels.size(), 0),
       votes_(surfels.size(), 0) {}
 
-bool SideVotes::has_normal(std::size_t i) const {
-    return s_.nx[i] != 0 || s_.ny[i] != 0 || s_.nz[i] != 0;
-}
-
 double SideVotes::facing(std::size_t i, const Vec3& eye) const {
-    const Vec3 d{eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]};
-    const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    return length > 0 ? (s_.nx[i] * d[0] + s_.ny[i] * d[1] + s_.nz[i] * d[2]) / length : 0;
+    const Vec3 d = minus(eye, {s_.x[i], s_.y[i], s_.z[i]});
+    const double distance = length(d);
+    return distance > 0 ? dot({s_.nx[i], s_.ny[i], s_.nz[i]}, d) / distance : 0;
 }
 
 bool SideVotes::one_sided(std::size_t i) const {
-    return has_normal(i) && s_.roughness_m[i] <= two_sided_cells * s_.cell_m;
+    return s_.has_normal(i) && s_.roughness_m[i] <= two_sided_cells * s_.cell_m;
 }
 
 bool SideVotes::from_behind(std::size_t i, const Vec3& eye) const {
@@ -54,7 +50,7 @@ bool SideVotes::from_behind(std::size_t i, const Vec3& eye) const {
 }
 
 void SideVotes::believe_normals() {
-    for (std::size_t i = 0; i < s_.size(); ++i) side_[i] = has_normal(i) ? 1 : 0;
+    for (std::size_t i = 0; i < s_.size(); ++i) side_[i] = s_.has_normal(i) ? 1 : 0;
 }
 
 void SideVotes::forget() {
@@ -84,7 +80,7 @@ float SideVotes::agreement(std::size_t i, std::size_t j) const {
 
 // Of the pixels that the surface that a surfel stands for takes up where nothing is before it.
 float SideVotes::view_share(std::size_t i, std::uint32_t pixels, const Vec3& eye) const {
-    const Vec3 d{s_.x[i] - eye[0], s_.y[i] - eye[1], s_.z[i] - eye[2]};
+    const Vec3 d = minus({s_.x[i], s_.y[i], s_.z[i]}, eye);
     const double deep = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
     const double side = CubeView::focal * radii_[i] / radius_sides / deep;
     const double all = side * side * std::abs(facing(i, eye)) * length(d) / deep;
@@ -99,7 +95,7 @@ void SideVotes::count(CubeView& view) {
             std::atomic_ref(pixels[i]).fetch_add(count, std::memory_order_relaxed);
             const double f = facing(i, view.eye);
             // The same in all images.
-            if (!has_normal(i) || std::abs(f) >= vote_cos)
+            if (!s_.has_normal(i) || std::abs(f) >= vote_cos)
                 std::atomic_ref(seen[i]).store(f > 0 ? 1 : -1, std::memory_order_relaxed);
         });
     });
@@ -107,8 +103,7 @@ void SideVotes::count(CubeView& view) {
     pool_.each(s_.size(), vote_chunk, [&](std::size_t i) {
         if (seen[i] == 0) return;
         std::uint32_t around = 1, agree = 1;
-        for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
-            const std::uint32_t j = s_.neighbours[k];
+        for (const std::uint32_t j : s_.around(i)) {
             const float along = agreement(i, j);
             if (std::abs(along) < one_surface_cos) continue;
             ++around;
@@ -126,10 +121,9 @@ void SideVotes::count(CubeView& view) {
 
 void SideVotes::agree() {
     for (std::size_t i = 0; i < s_.size(); ++i) {
-        if (!has_normal(i)) continue;
+        if (!s_.has_normal(i)) continue;
         float sum = votes_[i], voters = 1;
-        for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
-            const std::uint32_t j = s_.neighbours[k];
+        for (const std::uint32_t j : s_.around(i)) {
             const float along = agreement(i, j);
             if (std::abs(along) <= one_surface_cos) continue;
             sum += along > 0 ? votes_[j] : -votes_[j];
@@ -151,9 +145,8 @@ void SideVotes::spread() {
     std::vector<float> said(s_.size(), 0);  // for the normal's side, less for the other
     std::priority_queue<Reached> next;
     const auto tell = [&](std::uint32_t i) {
-        for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
-            const std::uint32_t j = s_.neighbours[k];
-            if (side_[j] != 0 || !has_normal(j)) continue;
+        for (const std::uint32_t j : s_.around(i)) {
+            if (side_[j] != 0 || !s_.has_normal(j)) continue;
             said[j] += static_cast<float>(side_[i]) * std::abs(cosine(i, j)) * agreement(i, j);
             next.push({std::abs(said[j]), j});
         }

@@ -20,7 +20,6 @@ class SideVotes {
 
     // 1: the normal points to the free side, -1: away from it, 0: not known.
     int side(std::size_t i) const { return side_[i]; }
-    bool has_normal(std::size_t i) const;
     // Cosine between the surfel's normal and the direction to the eye.
     double facing(std::size_t i, const Vec3& eye) const;
     // Whether it is no edge, nor both faces of a thin board.

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
-#include <cstdint>
 #include <vector>
 
+#include "geometry/coarse_grid.h"
 #include "geometry/surface_samples.h"
 
 namespace topple::geometry {
@@ -16,18 +15,15 @@ class SightLines {
   public:
     explicit SightLines(const SurfaceSamples& samples);
 
-    double cell_m() const { return cell_m_; }
+    double cell_m() const { return grid_.cell_m(); }
     // Distance from `from` along a unit direction to the first occupied cell at least `start_m`
     // away; infinite where there is none within `reach_m`.
     double met_m(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double start_m,
                  double reach_m) const;
 
   private:
-    bool occupied(const Eigen::Vector3d& p) const;
-    double cell_m_ = 0;
-    Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
-    std::array<std::int64_t, 3> size_{};
-    std::vector<bool> cell_;
+    CoarseGrid grid_;
+    std::vector<bool> occupied_;  // by cell
 };
 
 }  // namespace topple::geometry

@@ -28,8 +28,7 @@ constexpr double angle_noises = tolerance_sigmas;
 float nth_around(const Surfels& s, const std::vector<float>& value, std::size_t i,
                  std::size_t kept) {
     std::vector<float> around{value[i]};
-    for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e)
-        around.push_back(value[s.neighbours[e]]);
+    for (const std::uint32_t j : s.around(i)) around.push_back(value[j]);
     return ranked(around, kept - 1);
 }
 
@@ -40,8 +39,7 @@ std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& 
     constexpr std::size_t of_a_surface = 7;  // kept of 27
     std::vector<float> out(value.size());
     threads.each(value.size(), split_chunk, [&](std::size_t i) {
-        const auto first = s.neighbour_first[i], last = s.neighbour_first[i + 1];
-        const std::size_t kept = (1 + last - first) / 4 + 1;
+        const std::size_t kept = (1 + s.around(i).size()) / 4 + 1;
         if (kept > of_a_surface) {
             out[i] = nth_around(s, value, i, kept);
             return;
@@ -56,7 +54,7 @@ std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& 
             least[at] = v;
         };
         add(value[i]);
-        for (auto e = first; e < last; ++e) add(value[s.neighbours[e]]);
+        for (const std::uint32_t j : s.around(i)) add(value[j]);
         out[i] = least[kept - 1];
     });
     return out;
@@ -68,8 +66,7 @@ double normal_noise(const Surfels& s, float smooth_m) {
     const std::size_t step = s.size() / 20000 + 1;
     for (std::size_t i = 0; i < s.size(); i += step) {
         if (s.roughness_m[i] > smooth_m) continue;
-        for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e) {
-            const std::uint32_t j = s.neighbours[e];
+        for (const std::uint32_t j : s.around(i)) {
             if (s.roughness_m[j] > smooth_m) continue;
             const double c = normal(s, i).dot(normal(s, j));
             angles.push_back(static_cast<float>(std::acos(std::clamp(c, -1.0, 1.0))));
@@ -152,11 +149,6 @@ Regions split(const Surfels& surfels, ThreadPool& threads) {
     refit_regions(surfels, scale, threads, regions);
     clean_regions(surfels, scale, threads, regions);
     return regions;
-}
-
-Regions split(const Surfels& surfels) {
-    ThreadPool threads(0);
-    return split(surfels, threads);
 }
 
 }  // namespace topple::geometry

@@ -61,8 +61,7 @@ class Cleaner {
         using Offer = std::tuple<double, std::uint32_t, std::int32_t>;
         std::priority_queue<Offer, std::vector<Offer>, std::greater<>> offers;
         const auto offer_around = [&](std::uint32_t i) {
-            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
-                const std::uint32_t j = s_.neighbours[e];
+            for (const std::uint32_t j : s_.around(i)) {
                 if (r_.label[j] >= 0) continue;
                 const double d = std::abs(distance(model(r_.label[i]), position(s_, j)));
                 if (d > reach * scale_.tolerance_m[j]) continue;
@@ -91,8 +90,7 @@ class Cleaner {
             std::map<std::int32_t, std::uint32_t> touches;
             for (std::size_t head = 0; head < piece.size(); ++head) {
                 const std::uint32_t i = piece[head];
-                for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
-                    const std::uint32_t j = s_.neighbours[e];
+                for (const std::uint32_t j : s_.around(i)) {
                     if (r_.label[j] >= 0) {
                         ++touches[r_.label[j]];
                     } else if (!seen[j]) {
@@ -136,8 +134,8 @@ class Cleaner {
             auto& mine = members[k];
             std::map<std::int32_t, std::uint32_t> touches;
             for (const std::uint32_t i : mine)
-                for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
-                    const std::int32_t other = r_.label[s_.neighbours[e]];
+                for (const std::uint32_t j : s_.around(i)) {
+                    const std::int32_t other = r_.label[j];
                     if (other >= 0 && other != k) ++touches[other];
                 }
             std::int32_t best = -1;
@@ -168,11 +166,10 @@ class Cleaner {
     }
 
     std::int32_t smoothed_label(std::uint32_t i) const {
-        const auto first = s_.neighbour_first[i], last = s_.neighbour_first[i + 1];
         std::array<std::pair<std::int32_t, int>, 26> votes;  // label, neighbours that have it
         std::size_t labels = 0;
-        for (auto e = first; e < last; ++e) {
-            const std::int32_t label = r_.label[s_.neighbours[e]];
+        for (const std::uint32_t j : s_.around(i)) {
+            const std::int32_t label = r_.label[j];
             if (label < 0) continue;
             std::size_t at = 0;
             while (at < labels && votes[at].first != label) ++at;
@@ -186,7 +183,7 @@ class Cleaner {
         for (std::size_t k = 0; k < labels; ++k) {
             const auto [label, count] = votes[k];
             const double cost = std::min(misfit(label, i), most_misfit) -
-                                neighbour_vote * count / static_cast<double>(last - first);
+                                neighbour_vote * count / static_cast<double>(s_.around(i).size());
             if (cost < best) best = cost, chosen = label;
         }
         return chosen;

@@ -89,8 +89,7 @@ class Grower {
         }
         for (std::size_t head = 0; head < members.size(); ++head) {
             const std::uint32_t i = members[head];
-            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
-                const std::uint32_t j = s_.neighbours[e];
+            for (const std::uint32_t j : s_.around(i)) {
                 if (seen_[j] == stamp_ || out_.label[j] >= 0 || !fits(model, j)) continue;
                 seen_[j] = stamp_;
                 members.push_back(j);

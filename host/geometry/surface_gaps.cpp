@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/place.h"
+#include "core/rows.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -15,9 +18,9 @@ using Point = std::array<float, 3>;
 class Taken {
   public:
     // Whether it was not taken yet.
-    bool take(const std::array<std::int32_t, 3>& cell) {
-        const std::array<std::int32_t, 3> at{cell[0] >> 2, cell[1] >> 2, cell[2] >> 2};
-        if (count_ == 0 || at != words_[last_].at) last_ = place_of(at);
+    bool take(const Place& cell) {
+        const Place at{cell[0] >> 2, cell[1] >> 2, cell[2] >> 2};
+        if (count_ == 0 || at != words_[last_].at) last_ = slot_of(at);
         const std::uint64_t bit = std::uint64_t{1}
                                   << ((cell[0] & 3) << 4 | (cell[1] & 3) << 2 | (cell[2] & 3));
         std::uint64_t& cells = words_[last_].cells;
@@ -29,10 +32,10 @@ class Taken {
   private:
     struct Word {
         std::uint64_t cells = 0;  // none where the slot is free
-        std::array<std::int32_t, 3> at{};
+        Place at{};
     };
     // Of the word, or of the free slot that it is to have.
-    std::size_t find(const std::array<std::int32_t, 3>& at) const {
+    std::size_t find(const Place& at) const {
         std::uint64_t hash = 0;
         for (const std::int32_t k : at)
             hash = (hash ^ static_cast<std::uint32_t>(k)) * 0x9e3779b97f4a7c15U;
@@ -41,7 +44,7 @@ class Taken {
         while (words_[slot].cells != 0 && words_[slot].at != at) slot = (slot + 1) & mask;
         return slot;
     }
-    std::size_t place_of(const std::array<std::int32_t, 3>& at) {
+    std::size_t slot_of(const Place& at) {
         if (2 * (count_ + 1) > words_.size()) grow();
         const std::size_t slot = find(at);
         if (words_[slot].cells == 0) {
@@ -77,7 +80,7 @@ class Closing {
                 const float a = static_cast<float>(u) / static_cast<float>(steps),
                             b = static_cast<float>(v) / static_cast<float>(steps);
                 Point p{};
-                std::array<std::int32_t, 3> cell{};
+                Place cell{};
                 for (std::size_t k = 0; k < 3; ++k) {
                     p[k] = t[0][k] + a * (t[1][k] - t[0][k]) + b * (t[2][k] - t[0][k]);
                     cell[k] = static_cast<std::int32_t>(
@@ -108,21 +111,17 @@ class Closing {
 GapPoints close_primitive(const Surfels& s, std::span<const std::int32_t> face,
                           std::span<const std::int32_t> primitive,
                           std::span<const std::uint32_t> members, double step_m) {
-    const auto near = [&](std::size_t n) {
-        return std::span(s.neighbours)
-            .subspan(s.neighbour_first[n], s.neighbour_first[n + 1] - s.neighbour_first[n]);
-    };
     Closing closing(s, step_m);
     // What is on one face comes first.
     for (const bool one_face : {true, false}) {
         for (const std::uint32_t a : members) {
-            for (const std::uint32_t b : near(a)) {
+            for (const std::uint32_t b : s.around(a)) {
                 if (b <= a || primitive[b] != primitive[a]) continue;
                 if (one_face && face[a] != face[b]) continue;
-                for (const std::uint32_t c : near(b)) {
+                for (const std::uint32_t c : s.around(b)) {
                     if (c <= b || primitive[c] != primitive[a]) continue;
                     if (one_face != (face[a] == face[b] && face[a] == face[c])) continue;
-                    if (std::ranges::binary_search(near(a), c))
+                    if (std::ranges::binary_search(s.around(a), c))
                         closing.cover({a, b, c}, one_face ? face[a] : -1);
                 }
             }
@@ -137,9 +136,7 @@ GapPoints close_gaps(const Surfels& s, std::span<const std::int32_t> face,
                      std::span<const std::int32_t> primitive, double step_m, ThreadPool& pool) {
     std::int32_t primitives = 0;
     for (const std::int32_t p : primitive) primitives = std::max(primitives, p + 1);
-    std::vector<std::vector<std::uint32_t>> members(static_cast<std::size_t>(primitives));
-    for (std::size_t n = 0; n < s.size(); ++n)
-        if (primitive[n] >= 0) members[primitive[n]].push_back(static_cast<std::uint32_t>(n));
+    const auto members = places_by_label(primitive, static_cast<std::size_t>(primitives));
     std::vector<GapPoints> closed(members.size());
     pool.each(members.size(), 1, [&](std::size_t p) {
         closed[p] = close_primitive(s, face, primitive, members[p], step_m);

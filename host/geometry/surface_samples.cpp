@@ -5,15 +5,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/ranked.h"
+#include "core/rows.h"
+#include "core/sorted_order.h"
 
 namespace topple::geometry {
 namespace {
-
-constexpr std::uint64_t sample_chunk = 1 << 15;  // points handed to a thread at once
 
 // A cell and a point in it.
 struct Key {
@@ -102,38 +101,20 @@ Vec3 turned(const SceneFrame& frame, double x, double y, double z) {
     return p;
 }
 
-// The points by primitive, those without one first; within a primitive in their order.
-struct KeyedPoints {
-    std::vector<Key> key;
-    std::vector<std::ptrdiff_t> first;  // CSR over primitive + 1
-};
-
-KeyedPoints keyed_points(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
-                         const SceneFrame& frame, double edge_m, ThreadPool& threads) {
-    KeyedPoints out;
-    const auto place = [&](std::size_t n) {
-        return static_cast<std::size_t>(primitive_of_point[n] + 1);
-    };
-    out.first.assign(2, 0);
-    for (std::size_t n = 0; n < cloud.size(); ++n) {
-        if (out.first.size() < place(n) + 2) out.first.resize(place(n) + 2, 0);
-        ++out.first[place(n) + 1];
-    }
-    std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
-    std::vector<std::ptrdiff_t> next(out.first.begin(), out.first.end() - 1);
-    std::vector<std::uint32_t> order(cloud.size());
-    for (std::size_t n = 0; n < cloud.size(); ++n)
-        order[next[place(n)]++] = static_cast<std::uint32_t>(n);
-    out.key.resize(cloud.size());
-    threads.each(order.size(), sample_chunk, [&](std::size_t m) {
-        const std::uint32_t n = order[m];
+// The cells of some points, sorted.
+std::vector<Key> sorted_keys(const CloudView& cloud, std::span<const std::uint32_t> points,
+                             const SceneFrame& frame, double edge_m) {
+    std::vector<Key> keys;
+    keys.reserve(points.size());
+    for (const std::uint32_t n : points) {
         const Vec3 p = turned(frame, cloud.x[n], cloud.y[n], cloud.z[n]);
         const auto cell = [&](std::size_t a) {
             return static_cast<std::int32_t>(std::floor(p[a] / edge_m));
         };
-        out.key[m] = {cell(0), cell(1), cell(2), n};
-    });
-    return out;
+        keys.push_back({cell(0), cell(1), cell(2), n});
+    }
+    std::ranges::sort(keys);
+    return keys;
 }
 
 // The mean of the points of a cell. Sums of fixed-point numbers: exact, so that the order of points
@@ -171,7 +152,7 @@ void append(const SurfaceSamples& part, SurfaceSamples& out) {
     out.primitive.insert(out.primitive.end(), part.primitive.begin(), part.primitive.end());
 }
 
-SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::size_t>& which) {
+SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::uint32_t>& which) {
     SurfaceSamples out;
     out.edge_m = from.edge_m;
     out.spacing_m = from.spacing_m;
@@ -191,12 +172,16 @@ SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::size_t>&
 SurfaceSamples sample_surface(const CloudView& cloud, const Surfels& surfels,
                               std::span<const std::int32_t> primitive_of_point,
                               const SceneFrame& frame, double edge_m, ThreadPool& threads) {
-    const KeyedPoints points = keyed_points(cloud, primitive_of_point, frame, edge_m, threads);
-    std::vector<SurfaceSamples> parts(points.first.size() - 1);
+    std::int32_t last_primitive = -1;
+    for (const std::int32_t p : primitive_of_point) last_primitive = std::max(last_primitive, p);
+    // Those without a primitive first.
+    std::vector<SurfaceSamples> parts(static_cast<std::size_t>(last_primitive) + 2);
+    const Rows<std::uint32_t> members(parts.size(), [&](const auto& add) {
+        for (std::uint32_t n = 0; n < cloud.size(); ++n)
+            add(static_cast<std::size_t>(primitive_of_point[n] + 1), n);
+    });
     threads.each(parts.size(), 1, [&](std::size_t p) {
-        std::vector<Key> keys(points.key.begin() + points.first[p],
-                              points.key.begin() + points.first[p + 1]);
-        std::ranges::sort(keys);
+        const std::vector<Key> keys = sorted_keys(cloud, members[p], frame, edge_m);
         for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
             while (last < keys.size() && keys[last].same_cell(keys[first])) ++last;
             add_sample(cloud, surfels, frame, std::span(keys).subspan(first, last - first),
@@ -221,31 +206,17 @@ std::array<const std::vector<float>*, 9> columns_of(const SurfaceSamples& s) {
 
 SurfaceSamples samples_where(const SurfaceSamples& samples,
                              const std::function<bool(std::size_t)>& keep) {
-    std::vector<std::size_t> kept;
-    for (std::size_t n = 0; n < samples.size(); ++n)
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t n = 0; n < samples.size(); ++n)
         if (keep(n)) kept.push_back(n);
     return taken(samples, kept);
 }
 
 void sort_by_primitive(SurfaceSamples& samples) {
-    const std::vector<std::int32_t>& primitive = samples.primitive;
-    std::int32_t most = -1;
-    for (const std::int32_t p : primitive) most = std::max(most, p);
-    std::vector<std::size_t> next(static_cast<std::size_t>(most) + 3, 0);
-    for (const std::int32_t p : primitive) ++next[p + 2];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    std::vector<std::uint32_t> order(primitive.size());
-    for (std::size_t n = 0; n < primitive.size(); ++n)
-        order[next[primitive[n] + 1]++] = static_cast<std::uint32_t>(n);
-    const auto sort = [&](auto& values) {
-        std::remove_reference_t<decltype(values)> sorted;
-        sorted.reserve(order.size());
-        for (const std::uint32_t n : order) sorted.push_back(values[n]);
-        values = std::move(sorted);
-    };
-    for (auto* values : columns_of(samples))
-        if (!values->empty()) sort(*values);
-    sort(samples.primitive);
+    std::vector<std::uint64_t> keys;
+    for (const std::int32_t p : samples.primitive)
+        keys.push_back(static_cast<std::uint64_t>(p + 1));
+    samples = taken(samples, sorted_order(keys));
 }
 
 }  // namespace topple::geometry

@@ -81,8 +81,7 @@ std::vector<float> covering_radii(const Surfels& s, double gap_m, ThreadPool& po
         if (n == Vec3{}) return;
         const auto [u, v] = tangents(n);
         VoronoiCell cell(2 * gap_m);
-        for (std::uint32_t k = s.neighbour_first[i]; k < s.neighbour_first[i + 1]; ++k) {
-            const std::uint32_t j = s.neighbours[k];
+        for (const std::uint32_t j : s.around(i)) {
             const Vec3 d{double{s.x[j]} - s.x[i], double{s.y[j]} - s.y[i], double{s.z[j]} - s.z[i]};
             const Vec2 along{dot(d, u), dot(d, v)};
             const double planar = std::hypot(along[0], along[1]);
@@ -104,8 +103,7 @@ std::vector<DiscCuts> cuts_at_edges(const Surfels& s, std::span<const float> rad
         if (n == Vec3{}) return;
         double nearest[2] = {radii_m[i], radii_m[i]};
         Vec3 towards[2]{};
-        for (std::uint32_t k = s.neighbour_first[i]; k < s.neighbour_first[i + 1]; ++k) {
-            const std::uint32_t j = s.neighbours[k];
+        for (const std::uint32_t j : s.around(i)) {
             const Vec3 m{s.nx[j], s.ny[j], s.nz[j]};
             const double cosine = dot(n, m);
             if (m == Vec3{} || std::abs(cosine) > one_face_cos) continue;

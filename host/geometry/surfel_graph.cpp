@@ -2,10 +2,10 @@
 #include "geometry/surfel_graph.h"
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 #include <utility>
 
+#include "core/sort_unique.h"
 #include "geometry/cell_grid.h"
 
 namespace topple::geometry {
@@ -16,23 +16,13 @@ constexpr std::uint64_t graph_chunk = 1 << 10;  // surfels handed to a thread at
 // The surfels in blocks of 2^level cells a side.
 class Blocks {
   public:
-    Blocks(const Surfels& s, int level) : s_(s), level_(level) {
-        std::array<std::int64_t, 3> low, high;
-        low.fill(std::numeric_limits<std::int64_t>::max());
-        high.fill(std::numeric_limits<std::int64_t>::min());
-        for (std::size_t i = 0; i < s.size(); ++i) {
-            const auto at = block(i);
-            for (std::size_t a = 0; a < 3; ++a) {
-                low[a] = std::min(low[a], at[a]);
-                high[a] = std::max(high[a], at[a]);
-            }
-        }
-        pack_ = CellPacking(low, high, 1);
+    Blocks(const Surfels& s, int level) {
+        const auto block = [&](std::size_t i) {
+            return GridCell{s.cx[i] >> level, s.cy[i] >> level, s.cz[i] >> level};
+        };
+        pack_ = CellPacking::of(s.size(), block, 1);
         keys_.resize(s.size());
-        for (std::size_t i = 0; i < s.size(); ++i) {
-            const auto at = block(i);
-            keys_[i] = pack_(at[0], at[1], at[2]);
-        }
+        for (std::size_t i = 0; i < s.size(); ++i) keys_[i] = pack_(block(i));
         groups_ = group_keys(keys_);
         for (std::size_t g = 0; g < groups_.size(); ++g)
             key_of_group_.push_back(keys_[groups_.group(g)[0]]);
@@ -54,11 +44,6 @@ class Blocks {
     }
 
   private:
-    std::array<std::int64_t, 3> block(std::size_t i) const {
-        return {s_.cx[i] >> level_, s_.cy[i] >> level_, s_.cz[i] >> level_};
-    }
-    const Surfels& s_;
-    int level_;
     CellPacking pack_{{0, 0, 0}, {0, 0, 0}};
     std::vector<std::uint64_t> keys_, key_of_group_;
     KeyGroups groups_;
@@ -109,8 +94,7 @@ std::vector<Tie> nearest_ties(const Surfels& s, std::vector<std::uint32_t> left,
         }
         left.swap(next);
     }
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
+    sort_unique(out);
     return out;
 }
 
@@ -120,18 +104,14 @@ void connect_surfels(Surfels& s, double reach_m, ThreadPool& threads) {
     cell_neighbours(s.cx, s.cy, s.cz, threads, s.neighbour_first, s.neighbours);
     std::vector<std::uint32_t> lonely;
     for (std::uint32_t i = 0; i < s.size(); ++i)
-        if (s.neighbour_first[i + 1] - s.neighbour_first[i] < plane_neighbours) lonely.push_back(i);
+        if (s.around(i).size() < plane_neighbours) lonely.push_back(i);
     const std::vector<Tie> ties = nearest_ties(s, std::move(lonely), reach_m, threads);
-    std::vector<std::uint32_t> count(s.size());
-    for (std::size_t i = 0; i < s.size(); ++i)
-        count[i] = s.neighbour_first[i + 1] - s.neighbour_first[i];
-    const auto first_of = [&](std::uint32_t i) {
-        return s.neighbours.begin() + s.neighbour_first[i];
-    };
+    std::vector<std::size_t> count(s.size());
+    for (std::size_t i = 0; i < s.size(); ++i) count[i] = s.around(i).size();
     std::vector<std::pair<std::uint32_t, std::uint32_t>> added;
     for (const Tie& t : ties) {
         if (std::max(count[t.i], count[t.j]) >= most_neighbours ||
-            std::binary_search(first_of(t.i), first_of(t.i + 1), t.j))
+            std::ranges::binary_search(s.around(t.i), t.j))
             continue;
         ++count[t.i], ++count[t.j];
         added.emplace_back(t.i, t.j);
@@ -143,7 +123,7 @@ void connect_surfels(Surfels& s, double reach_m, ThreadPool& threads) {
     auto next = added.begin();
     for (std::uint32_t i = 0; i < s.size(); ++i) {
         const auto begin = static_cast<std::ptrdiff_t>(all.size());
-        all.insert(all.end(), first_of(i), first_of(i + 1));
+        all.insert(all.end(), s.around(i).begin(), s.around(i).end());
         const auto middle = static_cast<std::ptrdiff_t>(all.size());
         for (; next != added.end() && next->first == i; ++next) all.push_back(next->second);
         std::inplace_merge(all.begin() + begin, all.begin() + middle, all.end());

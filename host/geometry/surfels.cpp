@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "core/colour_space.h"
@@ -92,12 +93,9 @@ CellGrid bin(const CloudView& cloud, double cell_m, ThreadPool& threads,
     count.assign(cells.size(), 0);
     threads.each(cells.size(), surfel_chunk, [&](std::size_t cell) {
         const auto points = cells.group(cell);
-        const std::array<std::int64_t, 3> at{index(cloud.x[points[0]]), index(cloud.y[points[0]]),
-                                             index(cloud.z[points[0]])};
         for (const std::uint32_t i : points) of_point[i] = static_cast<std::uint32_t>(cell);
-        grid.x[cell] = static_cast<std::int32_t>(at[0]);
-        grid.y[cell] = static_cast<std::int32_t>(at[1]);
-        grid.z[cell] = static_cast<std::int32_t>(at[2]);
+        grid.set_index(cell, {index(cloud.x[points[0]]), index(cloud.y[points[0]]),
+                              index(cloud.z[points[0]])});
         grid.set(cell, moments_of(p, points, grid.index(cell), cell_m));
         const double size = static_cast<double>(points.size());
         count[cell] = static_cast<float>(size);
@@ -108,7 +106,7 @@ CellGrid bin(const CloudView& cloud, double cell_m, ThreadPool& threads,
 
 void set_normals(Surfels& s, const PlaneFit& fit, const std::vector<std::uint32_t>* of,
                  double cell_m) {
-    for (std::size_t k = 0; k < fit.rms.size(); ++k) {
+    for (std::size_t k = 0; k < fit.size(); ++k) {
         const std::size_t i = of ? (*of)[k] : k;
         s.nx[i] = fit.normal[0][k];
         s.ny[i] = fit.normal[1][k];
@@ -117,19 +115,14 @@ void set_normals(Surfels& s, const PlaneFit& fit, const std::vector<std::uint32_
     }
 }
 
-bool undefined(const Surfels& s, std::size_t i) {
-    return s.nx[i] == 0 && s.ny[i] == 0 && s.nz[i] == 0;
-}
-
 // Where a surfel has too few neighbours for a plane, the next coarser grid that has enough gives
 // it.
 void fill_from_coarser(device::Device& device, const CellGrid& fine, Surfels& s) {
     std::vector<std::uint32_t> left;
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        if (undefined(s, i)) left.push_back(static_cast<std::uint32_t>(i));
-    }
+    for (std::uint32_t i = 0; i < s.size(); ++i)
+        if (!s.has_normal(i)) left.push_back(i);
     std::vector<std::uint32_t> cell_of(s.size());
-    for (std::size_t i = 0; i < s.size(); ++i) cell_of[i] = static_cast<std::uint32_t>(i);
+    std::iota(cell_of.begin(), cell_of.end(), 0u);
     CellGrid grid = fine;
     for (int level = 1; level <= most_levels && !left.empty(); ++level) {
         std::vector<std::uint32_t> parent;
@@ -137,17 +130,14 @@ void fill_from_coarser(device::Device& device, const CellGrid& fine, Surfels& s)
         for (std::uint32_t& cell : cell_of) cell = parent[cell];
         PlaneQueries queries;
         for (const std::uint32_t i : left) {
-            const std::uint32_t cell = cell_of[i];
-            queries.cell.push_back(cell);
-            queries.at[0].push_back(
-                static_cast<float>(s.x[i] / grid.cell_m - (grid.x[cell] + 0.5)));
-            queries.at[1].push_back(
-                static_cast<float>(s.y[i] / grid.cell_m - (grid.y[cell] + 0.5)));
-            queries.at[2].push_back(
-                static_cast<float>(s.z[i] / grid.cell_m - (grid.z[cell] + 0.5)));
+            queries.cell.push_back(cell_of[i]);
+            const std::array<double, 3> at{s.x[i], s.y[i], s.z[i]};
+            for (std::size_t a = 0; a < 3; ++a)
+                queries.at[a].push_back(
+                    static_cast<float>(at[a] / grid.cell_m - (grid.index(cell_of[i])[a] + 0.5)));
         }
         set_normals(s, fit_planes(device, grid, std::move(queries)), &left, grid.cell_m);
-        std::erase_if(left, [&](std::uint32_t i) { return !undefined(s, i); });
+        std::erase_if(left, [&](std::uint32_t i) { return s.has_normal(i); });
     }
 }
 
@@ -160,11 +150,11 @@ Surfels from_grid(const CellGrid& grid) {
     for (auto* field : {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz, &s.roughness_m}) {
         field->assign(grid.size(), 0.0f);
     }
-    for (std::size_t i = 0; i < grid.size(); ++i) {
-        s.x[i] = static_cast<float>((grid.x[i] + 0.5 + grid.mean[0][i]) * grid.cell_m);
-        s.y[i] = static_cast<float>((grid.y[i] + 0.5 + grid.mean[1][i]) * grid.cell_m);
-        s.z[i] = static_cast<float>((grid.z[i] + 0.5 + grid.mean[2][i]) * grid.cell_m);
-    }
+    const std::array<std::vector<float>*, 3> at{&s.x, &s.y, &s.z};
+    for (std::size_t i = 0; i < grid.size(); ++i)
+        for (std::size_t a = 0; a < 3; ++a)
+            (*at[a])[i] =
+                static_cast<float>((grid.index(i)[a] + 0.5 + grid.mean[a][i]) * grid.cell_m);
     return s;
 }
 
@@ -233,7 +223,7 @@ Surfels make_surfels(device::Device& device, const CloudView& cloud, const Surfe
     PlaneFit sharp = PlaneFitter(device, grid, queries_at_means(grid)).fit({px, py, pz});
     for (std::size_t i = 0; i < s.size(); ++i) {
         // Where too few agree, the first pass stands.
-        if (sharp.normal[0][i] == 0 && sharp.normal[1][i] == 0 && sharp.normal[2][i] == 0) {
+        if (!sharp.has_plane(i)) {
             sharp.normal[0][i] = px[i];
             sharp.normal[1][i] = py[i];
             sharp.normal[2][i] = pz[i];

@@ -32,6 +32,12 @@ struct Surfels {
     std::vector<std::uint32_t> neighbour_first, neighbours;
 
     std::size_t size() const { return x.size(); }
+    // The neighbours of one.
+    std::span<const std::uint32_t> around(std::size_t i) const {
+        return std::span(neighbours)
+            .subspan(neighbour_first[i], neighbour_first[i + 1] - neighbour_first[i]);
+    }
+    bool has_normal(std::size_t i) const { return nx[i] != 0 || ny[i] != 0 || nz[i] != 0; }
 };
 
 // The size of surfels.

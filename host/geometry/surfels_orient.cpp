@@ -27,8 +27,7 @@ std::vector<std::uint32_t> spread_sign(Surfels& s, std::uint32_t seed, std::vect
     const auto reach = [&](std::uint32_t i) {
         done[i] = true;
         piece.push_back(i);
-        for (std::uint32_t k = s.neighbour_first[i]; k < s.neighbour_first[i + 1]; ++k) {
-            const std::uint32_t j = s.neighbours[k];
+        for (const std::uint32_t j : s.around(i)) {
             if (done[j]) continue;
             const float parallel = std::min(std::abs(normals_dot(s, i, j)), 1.0f);
             const auto bucket = static_cast<std::size_t>(parallel * (buckets - 1));

@@ -118,9 +118,8 @@ void part_sides(const CloudView& cloud, const SensorSides& sides, ThreadPool& th
     for (auto* index : {&grid.x, &grid.y, &grid.z}) spread_out(*index);
     for (auto& values : grid.mean) spread_out(values);
     for (auto& values : grid.spread) spread_out(values);
-    for (auto& values : planes.normal) spread_out(values);
-    for (auto* values : {&grid.weight, &count, &planes.rms, &planes.offset, &planes.used})
-        spread_out(*values);
+    for (auto* values : planes.columns()) spread_out(*values);
+    for (auto* values : {&grid.weight, &count}) spread_out(*values);
     threads.each(of_point.size(), sides_chunk,
                  [&](std::size_t i) { of_point[i] = now[of_point[i]]; });
     for (const Parted& p : parted) {

@@ -9,6 +9,7 @@
 
 #include "solids/boundary.h"
 #include "solids/cell_shape.h"
+#include "solids/solid_places.h"
 
 namespace topple::physics {
 namespace {

@@ -261,7 +261,7 @@ class Looking {
             view.for_each_seen(image, [&](std::uint32_t i, std::uint32_t) {
                 if (out_.viewpoint_of_surfel[i] != no_eye) return;
                 const double f = sides_.facing(i, view.eye);
-                if (sides_.has_normal(i) && std::abs(f) < seen_cos) return;
+                if (s_.has_normal(i) && std::abs(f) < seen_cos) return;
                 if (sides_.side(i) == 0) sides_.face(i, f);
                 if (sides_.side(i) * f >= 0) out_.viewpoint_of_surfel[i] = eye;
             });
@@ -309,7 +309,7 @@ class Looking {
         sides_.agree();
         for (std::size_t i = 0; i < s_.size(); ++i) {
             std::uint32_t& eye = out_.viewpoint_of_surfel[i];
-            if (sides_.has_normal(i) && eye != no_eye &&
+            if (s_.has_normal(i) && eye != no_eye &&
                 sides_.side(i) * sides_.facing(i, out_.eyes[eye]) <= 0)
                 eye = no_eye;
         }

@@ -16,7 +16,7 @@ namespace {
 constexpr double look_around_m = 1.5, see_edges_m = 0.7;
 
 // Where one object might be moved to.
-struct Place {
+struct NewPlace {
     std::int32_t di = 0, dj = 0;  // voxels
     double way_m = 0;
     double risk_J = 0;  // of the disturbances whose response tells it
@@ -33,16 +33,16 @@ struct Mover {
 
     // The nearest places of the object that are tolerable to those: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
-    std::vector<Place> places(std::size_t o, const Landscape::Places& around) const {
+    std::vector<NewPlace> places(std::size_t o, const Landscape::Places& around) const {
         const Elsewhere elsewhere{toppling_of(objects[o], objects[o].open_tipping, friction),
                                   toppling_of(objects[o], objects[o].level_tipping, friction)};
-        std::map<std::pair<int, int>, Place> nearest;
+        std::map<std::pair<int, int>, NewPlace> nearest;
         const std::int32_t half = around.side / 2;
         const double voxel_m = solids.voxel_m();
         const auto stride = static_cast<std::int32_t>(std::lround(around.step_m / voxel_m));
         for (std::int32_t b = 0; b < around.side; ++b) {
             for (std::int32_t a = 0; a < around.side; ++a) {
-                Place place;
+                NewPlace place;
                 place.di = (a - half) * stride;
                 place.dj = (b - half) * stride;
                 place.way_m = voxel_m * std::hypot(place.di, place.dj);
@@ -58,10 +58,10 @@ struct Mover {
                 nearest.insert_or_assign(key, std::move(place));
             }
         }
-        std::vector<Place> out;
+        std::vector<NewPlace> out;
         for (auto& [key, place] : nearest) out.push_back(std::move(place));
         std::stable_sort(out.begin(), out.end(),
-                         [](const Place& a, const Place& b) { return a.way_m < b.way_m; });
+                         [](const NewPlace& a, const NewPlace& b) { return a.way_m < b.way_m; });
         return out;
     }
 
@@ -71,7 +71,7 @@ struct Mover {
     };
     // Its curve and risk there; false where that is more than is tolerated.
     bool weigh(std::size_t o, const physics::SlideResult& slide, const Elsewhere& elsewhere,
-               Place& place) const {
+               NewPlace& place) const {
         const Body& object = objects[o];
         physics::Candidate there = object.candidate;
         const double dx = place.di * solids.voxel_m(), dy = place.dj * solids.voxel_m();
@@ -184,7 +184,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
     std::vector<safety::Placement> placements;
     std::vector<double> all_J;  // the largest risk there
     for (std::size_t n = 0; n < chosen.size(); ++n) {
-        for (Place& place : mover.places(chosen[n], around[n])) {
+        for (NewPlace& place : mover.places(chosen[n], around[n])) {
             all_J.push_back(place.risk_J);
             placements.push_back({chosen[n], place.di, place.dj, std::move(place.there)});
         }

@@ -282,11 +282,7 @@ class Joiner {
         for (std::size_t n = 0; n < c.size(); ++n) {
             if (!core.holds(c.i[n], c.j[n], c.k[n])) continue;
             const std::int32_t p = c.primitive[n];
-            to.i.push_back(c.i[n]);
-            to.j.push_back(c.j[n]);
-            to.k.push_back(c.k[n]);
-            to.primitive.push_back(p < 0 ? -1 : numbers[p]);
-            to.basis.push_back(c.basis[n]);
+            to.add(place_of(c, n), p < 0 ? -1 : numbers[p], c.basis[n]);
             to.unseen_below.push_back(c.unseen_below[n]);
         }
     }

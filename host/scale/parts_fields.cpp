@@ -53,7 +53,6 @@ template <class Io, class Voxels>
 void voxel_fields(Io& io, Voxels& v, std::size_t count) {
     io(v.frame);
     io(v.bounds);
-    io(v.unplaced);
     io(v.beyond);
     io(v.tiles);
     io(v.leaves);

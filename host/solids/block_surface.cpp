@@ -7,7 +7,6 @@
 
 #include "core/union_find.h"
 #include "solids/matching.h"
-#include "solids/place.h"
 
 namespace topple::solids {
 namespace {

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include "solids/coherence.h"
 #include "solids/combine.h"
 #include "solids/matching.h"
-#include "solids/place.h"
+#include "solids/solid_places.h"
 
 namespace topple::solids {
 namespace {
@@ -24,29 +24,24 @@ constexpr std::uint64_t voxel_chunk = 1 << 13;  // voxels handed to a thread at 
 // (i, j, k) on.
 class Around {
   public:
-    Around(const SeenCells& seen, std::int32_t i, std::int32_t j, std::int32_t k) : seen_(seen) {
+    Around(const SeenCells& seen, const Place& at) : seen_(seen) {
+        const std::array<Place, 27> all = around(at);
         for (std::size_t column = 0; column < 9; ++column)
-            at_[column] = first_at(seen, {i + static_cast<std::int32_t>(column / 3) - 1,
-                                          j + static_cast<std::int32_t>(column % 3) - 1, k - 1});
+            from_[column] = first_at(seen, all[3 * column]);
     }
 
     // Adds up by patch, those of the primitive and those of others; both are emptied first.
-    void gather(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t p,
-                std::vector<SeenPatch>& own, std::vector<SeenPatch>& others) {
+    void gather(const Place& at, std::int32_t p, std::vector<SeenPatch>& own,
+                std::vector<SeenPatch>& others) {
         own.clear();
         others.clear();
+        const std::array<Place, 27> all = around(at);
         for (std::size_t column = 0; column < 9; ++column) {
-            const std::int32_t ci = i + static_cast<std::int32_t>(column / 3) - 1,
-                               cj = j + static_cast<std::int32_t>(column % 3) - 1;
-            std::size_t& at = at_[column];
-            const std::tuple first(ci, cj, k - 1);
-            while (at < seen_.size() && std::tie(seen_.i[at], seen_.j[at], seen_.k[at]) < first)
-                ++at;
-            for (std::size_t m = at;
-                 m < seen_.size() && seen_.i[m] == ci && seen_.j[m] == cj && seen_.k[m] <= k + 1;
-                 ++m) {
-                add(m, column == 4 && seen_.k[m] == k, seen_.primitive[m] == p ? own : others);
-            }
+            const Place &low = all[3 * column], &high = all[3 * column + 2];
+            std::size_t& from = from_[column];
+            while (from < seen_.size() && place_of(seen_, from) < low) ++from;
+            for (std::size_t m = from; m < seen_.size() && place_of(seen_, m) <= high; ++m)
+                add(m, place_of(seen_, m) == at, seen_.primitive[m] == p ? own : others);
         }
         for (std::vector<SeenPatch>* all : {&own, &others})
             for (SeenPatch& s : *all)
@@ -66,7 +61,7 @@ class Around {
     }
 
     const SeenCells& seen_;
-    std::array<std::size_t, 9> at_{};
+    std::array<std::size_t, 9> from_{};
 };
 
 // The directions that what was seen around each cell of its primitive faces.
@@ -75,20 +70,19 @@ std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells&
                                        std::vector<BorderVoxel>& candidates, ThreadPool& pool) {
     std::vector<std::uint8_t> faced(cells.size(), 0), beside(cells.size(), 0);
     pool.run(cells.size(), voxel_chunk, [&](std::uint64_t first, std::uint64_t last) {
-        Around around(seen, cells.i[first], cells.j[first], cells.k[first]);
+        Around seen_around(seen, place_of(cells, first));
         std::vector<SeenPatch> found, others;
         for (std::uint64_t n = first; n < last; ++n) {
             const std::int32_t p = cells.primitive[n];
             if (p < 0) continue;
-            around.gather(cells.i[n], cells.j[n], cells.k[n], p, found, others);
+            seen_around.gather(place_of(cells, n), p, found, others);
             for (const SeenPatch& s : found)
                 faced[n] |= faced_by(patches[s.patch].gradient(s.mean));
             beside[n] = !found.empty();
         }
     });
     for (std::size_t n = 0; n < cells.size(); ++n)
-        if (beside[n])
-            candidates.push_back({cells.i[n], cells.j[n], cells.k[n], cells.primitive[n], true});
+        if (beside[n]) candidates.push_back({place_of(cells, n), cells.primitive[n], true});
     return faced;
 }
 
@@ -100,22 +94,22 @@ std::vector<BorderVoxel> shared(const SolidCells& cells, const SeenCells& seen) 
         [&](std::size_t n) { return place_of(cells, n); },
         [&](std::size_t m, std::size_t n) {
             if (cells.primitive[n] >= 0 && cells.primitive[n] != seen.primitive[m])
-                out.push_back({seen.i[m], seen.j[m], seen.k[m], seen.primitive[m]});
+                out.push_back({place_of(seen, m), seen.primitive[m]});
         });
     return out;
 }
 
 // What mates reach, or bound of their primitive's own cells.
 std::vector<BorderVoxel> border_of_mates(const SolidCells& cells, std::span<const Mate> mates) {
+    std::vector<bool> own(mates.size(), false);
+    each_match(
+        mates.size(), [&](std::size_t m) { return mates[m].at; }, cells.size(),
+        [&](std::size_t n) { return place_of(cells, n); },
+        [&](std::size_t m, std::size_t n) { own[m] = cells.primitive[n] == mates[m].primitive; });
     std::vector<BorderVoxel> out;
-    std::size_t n = 0;
-    for (const Mate& m : mates) {
-        const std::tuple at(m.i, m.j, m.k);
-        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        const bool own = n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) == at &&
-                         cells.primitive[n] == m.primitive;
-        if (own || m.extends) out.push_back({m.i, m.j, m.k, m.primitive, own, !own});
-    }
+    for (std::size_t m = 0; m < mates.size(); ++m)
+        if (own[m] || mates[m].extends)
+            out.push_back({mates[m].at, mates[m].primitive, own[m], !own[m]});
     return out;
 }
 
@@ -209,25 +203,24 @@ std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& s
                                      std::span<const BorderVoxel> candidates,
                                      std::vector<WallSide>& walls, ThreadPool& pool) {
     const double h = cells.voxel_m;
-    const auto key_of = [](const Mate& m) { return CellKey(m.i, m.j, m.k, m.primitive); };
     std::vector<Combination> out(candidates.size());
     std::vector<std::vector<WallSide>> found_walls(candidates.size() / voxel_chunk + 1);
     pool.run(candidates.size(), voxel_chunk, [&](std::uint64_t first, std::uint64_t last) {
         const BorderVoxel& from = candidates[first];
-        Around around(seen, from.i, from.j, from.k);
+        Around seen_around(seen, from.at);
         std::vector<WallSide>& here = found_walls[first / voxel_chunk];
         std::vector<SeenPatch> found, others;
-        auto mate = std::ranges::lower_bound(mates, from.key(), {}, key_of);
+        auto mate = std::ranges::lower_bound(mates, from.key(), {}, &Mate::key);
         for (std::uint64_t n = first; n < last; ++n) {
             const BorderVoxel& c = candidates[n];
-            while (mate != mates.end() && key_of(*mate) < c.key()) ++mate;
-            const bool mates_here = mate != mates.end() && key_of(*mate) == c.key();
+            while (mate != mates.end() && mate->key() < c.key()) ++mate;
+            const bool mates_here = mate != mates.end() && mate->key() == c.key();
             if (sheet[c.primitive] && !mates_here) continue;
-            around.gather(c.i, c.j, c.k, c.primitive, found, others);
-            const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
+            seen_around.gather(c.at, c.primitive, found, others);
+            const Vec3 middle = middle_of(c.at, h);
             Combination& sum = out[n];
             sum = combine(found, patches, middle, h);
-            for (auto m = mate; m != mates.end() && key_of(*m) == c.key(); ++m)
+            for (auto m = mate; m != mates.end() && m->key() == c.key(); ++m)
                 add_bound(m->patch, m->outside, patches, middle, h, sum);
             add_wall(n, found, others, patches, middle, h, sum, here);
             add_corner(found, others, patches, middle, h, sum);
@@ -249,23 +242,18 @@ struct Bound {
 // patch stays.
 void settle_edges(std::span<const BorderVoxel> candidates, std::span<const SurfacePatch> patches,
                   double voxel_m, std::span<Combination> sums) {
-    const auto same_voxel = [&](std::size_t a, std::size_t b) {
-        return std::tie(candidates[a].i, candidates[a].j, candidates[a].k) ==
-               std::tie(candidates[b].i, candidates[b].j, candidates[b].k);
-    };
     const auto bound_by = [&](std::size_t c, std::int32_t other) -> Bound {
-        const Vec3 middle{(candidates[c].i + 0.5) * voxel_m, (candidates[c].j + 0.5) * voxel_m,
-                          (candidates[c].k + 0.5) * voxel_m};
         for (std::size_t s = 0; s < sums[c].used; ++s) {
-            if (!sums[c].use[s].bounds || !sums[c].use[s].outside ||
-                patches[sums[c].slot[s]].primitive != other)
-                continue;
-            return {&sums[c], s, level(patches[sums[c].slot[s]], middle)};
+            const SlotUse& use = sums[c].use[s];
+            const SurfacePatch& patch = patches[sums[c].slot[s]];
+            if (use.bounds && use.outside && patch.primitive == other)
+                return {&sums[c], s, level(patch, middle_of(candidates[c].at, voxel_m))};
         }
         return {nullptr, 0};
     };
     for (std::size_t n = 0; n < candidates.size(); ++n) {
-        for (std::size_t m = n + 1; m < candidates.size() && same_voxel(n, m); ++m) {
+        for (std::size_t m = n + 1; m < candidates.size() && candidates[m].at == candidates[n].at;
+             ++m) {
             const Bound a = bound_by(n, candidates[m].primitive),
                         b = bound_by(m, candidates[n].primitive);
             if (!a.of || !b.of) continue;
@@ -284,7 +272,7 @@ std::vector<bool> told_twice(std::span<const BorderVoxel> candidates,
     std::vector<bool> out(candidates.size(), false);
     for (const WallSide& w : walls) {
         const BorderVoxel& c = candidates[w.candidate];
-        const CellKey key(c.i, c.j, c.k, w.other);
+        const BorderKey key(c.at, w.other);
         const auto found = std::ranges::lower_bound(candidates, key, {}, &BorderVoxel::key);
         if (found == candidates.end() || found->key() != key) continue;
         const auto m = static_cast<std::size_t>(found - candidates.begin());
@@ -297,9 +285,9 @@ std::vector<bool> told_twice(std::span<const BorderVoxel> candidates,
 }
 
 void add_cell(const BorderVoxel& c, const Combination& sum, BoundaryCells& out) {
-    out.i.push_back(c.i);
-    out.j.push_back(c.j);
-    out.k.push_back(c.k);
+    out.i.push_back(c.at[0]);
+    out.j.push_back(c.at[1]);
+    out.k.push_back(c.at[2]);
     out.primitive.push_back(c.primitive);
     for (std::size_t s = 0; s < BoundaryCells::slots; ++s) out.slot[s].push_back(sum.slot[s]);
     out.form.push_back(make_form(sum.any_group, sum.use, sum.used));
@@ -321,7 +309,7 @@ std::vector<std::size_t> next_cells(const SolidCells& c, std::size_t axis, std::
 
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
                             std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
-                            std::span<const KnownRest> rests) {
+                            std::span<const Ledge> ledges) {
     for (std::size_t n = 0; n < seen.size(); ++n)
         patches[seen.patch[n]].primitive = seen.primitive[n];
     for (SurfacePatch& p : patches)
@@ -331,7 +319,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
         faced_around(cells, seen, patches, candidates, device.threads());
     unite(candidates, shared(cells, seen));
     const std::vector<Mate> mates =
-        find_mates(cells, seen, faced, rests, patches, device.threads());
+        find_mates(cells, seen, faced, ledges, patches, device.threads());
     unite(candidates, border_of_mates(cells, mates));
     std::vector<WallSide> walls;
     std::vector<Combination> sums =

@@ -5,19 +5,14 @@
 #include <vector>
 
 #include "core/boundary_cells.h"
+#include "core/ledge.h"
 #include "core/solid_cells.h"
 #include "core/thread_pool.h"
 #include "device/device.h"
+#include "solids/coherence.h"
 #include "solids/patches.h"
 
 namespace topple::solids {
-
-// A known height at which one primitive stands on another, where neither shows it: of a ledge in a
-// stack. Grid frame.
-struct KnownRest {
-    std::int32_t above = -1, below = -1;  // primitives
-    double height_m = 0;
-};
 
 // What bounds the solids within their voxels: patches that were seen in a voxel or right beside it;
 // and where two solids touch, or one reaches what faces it unseen, the patch of the one that goes
@@ -25,27 +20,27 @@ struct KnownRest {
 // they are, end within their voxels only where something stands against them. sheet: by primitive.
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
                             std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
-                            std::span<const KnownRest> rests = {});
+                            std::span<const Ledge> ledges = {});
 
 // The part of each voxel that is solid, and its moments (kernel cell_share).
 void measure_shares(device::Device& device, double voxel_m, BoundaryCells& boundary);
 
 // Where two primitives' solids end at one another: for the voxels of one, patches that bound it.
 struct Mate {
-    std::int32_t i, j, k, primitive;
+    Place at;
+    std::int32_t primitive;
     std::uint32_t patch;
     bool outside;  // of the patch is where the primitive is
     bool extends;  // the primitive goes on into this voxel; else it counts for its own ones alone
+    BorderKey key() const { return {at, primitive}; }
 };
-// Adds patches of known rests to `patches`. faced: by cell, bits of the directions -x +x -y +y -z
-// +z that a patch of the cell's primitive that was seen beside it faces. Sorted by (i, j, k,
-// primitive).
+// Adds patches of ledges to `patches`. faced: by cell, bits of the directions -x +x -y +y -z +z
+// that a patch of the cell's primitive that was seen beside it faces. Sorted by key.
 std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
-                             std::span<const std::uint8_t> faced, std::span<const KnownRest> rests,
+                             std::span<const std::uint8_t> faced, std::span<const Ledge> ledges,
                              std::vector<SurfacePatch>& patches, ThreadPool& threads);
 
 // The next cell along +axis of each, so many voxels away at most; no_cell where there is none.
-inline constexpr std::size_t no_cell = ~std::size_t{0};
 std::vector<std::size_t> next_cells(const SolidCells& cells, std::size_t axis,
                                     std::int32_t furthest);
 

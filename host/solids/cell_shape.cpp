@@ -187,7 +187,7 @@ class Part {
 // The patch that bounds a voxel from below, if one does.
 const SurfacePatch* bound_below(const BoundaryCells& b, std::size_t n, double h) {
     constexpr double facing = 0.7;  // cosine
-    const Vec3 middle{(b.i[n] + 0.5) * h, (b.j[n] + 0.5) * h, (b.k[n] + 0.5) * h};
+    const Vec3 middle = middle_of(place_of(b, n), h);
     for (std::size_t s = 0; s < b.slots_used(n); ++s) {
         const SlotUse use = b.use(n, s);
         const SurfacePatch& patch = b.patches[b.slot[s][n]];

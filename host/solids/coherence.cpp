@@ -6,19 +6,19 @@
 #include "core/union_find.h"
 #include "solids/boundary.h"
 #include "solids/matching.h"
-#include "solids/place.h"
+#include "solids/solid_places.h"
 
 namespace topple::solids {
+
 std::vector<bool> air_by_patches(const SolidCells& cells, std::span<const BorderVoxel> voxels,
                                  std::span<const Combination> sums) {
     std::vector<bool> air(cells.size(), false);
-    std::size_t n = 0;
-    for (std::size_t c = 0; c < voxels.size(); ++c) {
-        if (!voxels[c].own || !sums[c].nothing) continue;
-        const std::tuple at(voxels[c].i, voxels[c].j, voxels[c].k);
-        while (std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        air[n] = true;
-    }
+    each_match(
+        voxels.size(), [&](std::size_t c) { return voxels[c].at; }, cells.size(),
+        [&](std::size_t n) { return place_of(cells, n); },
+        [&](std::size_t c, std::size_t n) {
+            if (voxels[c].own && sums[c].nothing) air[n] = true;
+        });
     return air;
 }
 
@@ -48,7 +48,7 @@ std::vector<BorderVoxel> cut_off(const SolidCells& cells, std::vector<bool>& air
         if (p < 0 || static_cast<std::size_t>(p) >= any.size() || air[k] || seen[pieces.root(k)])
             continue;
         if (!any[p]) continue;
-        out.push_back({cells.i[k], cells.j[k], cells.k[k], p, true});
+        out.push_back({place_of(cells, k), p, true});
         air[k] = true;
     }
     return out;
@@ -58,15 +58,14 @@ std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const BorderVo
                                std::span<const Combination> sums, const std::vector<bool>& air) {
     constexpr std::array<Place, 6> ways{
         {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-    constexpr std::size_t axes = 3;  // of which the first ways are
-    const auto place = [&](std::size_t c) { return Place{voxels[c].i, voxels[c].j, voxels[c].k}; };
+    constexpr std::size_t axes = 3;   // of which the first ways are
     std::vector<std::size_t> beyond;  // what may hang on cells
     for (std::size_t c = 0; c < voxels.size(); ++c)
         if (!voxels[c].own && !sums[c].nothing) beyond.push_back(c);
     UnionFind pieces(beyond.size());
     for (std::size_t axis = 0; axis < axes; ++axis) {
         const auto key = [&](std::size_t n, const Place& way) {
-            return std::pair(sum_of(place(beyond[n]), way), voxels[beyond[n]].primitive);
+            return BorderKey(sum_of(voxels[beyond[n]].at, way), voxels[beyond[n]].primitive);
         };
         each_match(
             beyond.size(), [&](std::size_t n) { return key(n, ways[axis]); }, beyond.size(),
@@ -76,7 +75,7 @@ std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const BorderVo
     std::vector<bool> hangs(beyond.size(), false);  // by the root of its piece
     for (const Place& way : ways) {
         each_match(
-            beyond.size(), [&](std::size_t n) { return sum_of(place(beyond[n]), way); },
+            beyond.size(), [&](std::size_t n) { return sum_of(voxels[beyond[n]].at, way); },
             cells.size(), [&](std::size_t n) { return place_of(cells, n); },
             [&](std::size_t n, std::size_t cell) {
                 if (!air[cell] && cells.primitive[cell] == voxels[beyond[n]].primitive)

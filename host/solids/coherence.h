@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/solid_cells.h"
@@ -12,14 +11,15 @@
 
 namespace topple::solids {
 
-using CellKey = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>;
+using BorderKey = std::pair<Place, std::int32_t>;  // a voxel and a primitive
 
 // A voxel that may be on a primitive's border.
 struct BorderVoxel {
-    std::int32_t i, j, k, primitive;
+    Place at;
+    std::int32_t primitive;
     bool own = false;      // one of the primitive's cells
     bool extends = false;  // the primitive goes on into it
-    CellKey key() const { return {i, j, k, primitive}; }
+    BorderKey key() const { return {at, primitive}; }
 };
 
 // What hangs together is solid; what patches cut off from what was seen is not. In all of these

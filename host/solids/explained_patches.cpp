@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/rows.h"
 #include "solids/explaining.h"
-#include "solids/grid_points.h"
 #include "solids/patch_map.h"
 #include "solids/patches.h"
 
@@ -18,22 +18,6 @@ Eigen::Vector3d normal_of(const SurfacePatch& patch, const Eigen::Vector3d& p) {
     const Vec3 g = patch.gradient({p.x(), p.y(), p.z()});
     return Eigen::Vector3d(g[0], g[1], g[2]).normalized();
 }
-
-// The patch of more points that lies nearest to a point, within its noise; -1 where none does.
-// Those of fewer points were asked before, and may be dropped.
-struct Explainer {
-    std::span<const SurfacePatch> patches;
-    const Rows<std::uint32_t>& members;  // of each patch
-
-    std::int32_t operator()(const Eigen::Vector3d& p, std::int32_t own,
-                            std::span<const std::int32_t> near) const {
-        const auto rank = [&](std::int32_t patch) {
-            return std::pair(members[patch].size(), patch);
-        };
-        const auto mine = rank(own);
-        return explaining(patches, near, p, [&](std::int32_t other) { return rank(other) > mine; });
-    }
-};
 
 // Whether a patch is the rounded edge of two much larger ones, A and B: where depth readings of
 // both sides mix, its points lie between them. All of them are near both, and it faces between
@@ -56,23 +40,24 @@ bool is_edge(const Eigen::Vector3d& normal, std::span<const Eigen::Vector3d> bes
 
 }  // namespace
 
-void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patches,
-                    const std::array<Vec3, 3>& axes, double cell_m,
-                    std::vector<std::int32_t>& primitive_of_point,
-                    std::vector<std::int32_t>& patch_of_point, ThreadPool& threads) {
+void drop_explained(const GridPoints& points, std::span<const SurfacePatch> patches, double cell_m,
+                    PointLabels& labels, ThreadPool& threads) {
     constexpr double explained = 0.8;       // share of its points that makes a patch none
     constexpr std::size_t looked_at = 200;  // of them
     constexpr std::size_t much_larger = 4;
-    const auto members = points_by_label(patch_of_point, patches.size());
-    const PatchMap map(cloud, patch_of_point, patch_of_point, axes, cell_m, threads);
-    const auto point = [&](std::size_t n) {
-        return rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
+    const auto members = places_by_label(labels.patch, patches.size());
+    const PatchMap map(points, labels.patch, labels.patch, cell_m, threads);
+    const std::vector<std::int32_t> primitive = labels.primitive_of_patch(patches.size());
+    // The patch of more points that lies nearest to a point, within its noise; -1 where none does.
+    // Those of fewer points were asked before, and may be dropped.
+    const auto explain = [&](const Eigen::Vector3d& p, std::int32_t own,
+                             std::span<const std::int32_t> near) {
+        const auto rank = [&](std::int32_t patch) {
+            return std::pair(members[patch].size(), patch);
+        };
+        const auto mine = rank(own);
+        return explaining(patches, near, p, [&](std::int32_t other) { return rank(other) > mine; });
     };
-    std::vector<std::int32_t> primitive(patches.size(), -1);
-    for (std::size_t p = 0; p < patches.size(); ++p)
-        for (const std::uint32_t n : members[p])
-            primitive[p] = std::max(primitive[p], primitive_of_point[n]);
-    const Explainer explain{patches, members};
     // A patch asks only those of more points, each of which stands until its own turn: in whatever
     // order they are asked, the answers are the same.
     threads.run(patches.size(), 4, [&](std::uint64_t from, std::uint64_t to) {
@@ -85,9 +70,9 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
             beside.clear();  // much larger patches: points near them
             Eigen::Vector3d middle = Eigen::Vector3d::Zero();
             for (const std::uint32_t n : mine) {
-                if (!is_chosen(cloud, n, mine.size() / looked_at + 1)) continue;
+                if (!points.is_chosen(n, mine.size() / looked_at + 1)) continue;
                 ++looked;
-                const Eigen::Vector3d at = point(n);
+                const Eigen::Vector3d at = points[n];
                 middle += at;
                 const std::span<const std::int32_t> near = map.around(at, room);
                 met += explain(at, own, near) >= 0;
@@ -114,10 +99,10 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
             if (static_cast<double>(met) < enough && !is_edge(normal_of(patches[p], middle), sides))
                 continue;
             for (const std::uint32_t n : mine) {
-                const Eigen::Vector3d at = point(n);
+                const Eigen::Vector3d at = points[n];
                 const std::int32_t other = explain(at, own, map.around(at, room));
-                patch_of_point[n] = other;
-                if (other >= 0) primitive_of_point[n] = primitive[other];
+                labels.patch[n] = other;
+                if (other >= 0) labels.primitive[n] = primitive[other];
             }
         }
     });

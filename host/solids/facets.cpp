@@ -34,24 +34,12 @@ Vec3 outwards(const Facet& facet, std::span<const SurfacePatch> patches, const V
 
 ObjectEntries::ObjectEntries(const BoundaryCells& boundary,
                              std::span<const std::int32_t> object_of_primitive, double voxel_m)
-    : b_(boundary),
-      object_of_(object_of_primitive),
-      h_(voxel_m),
-      seen_on_(object_of_primitive.size()) {
-    for (std::uint32_t n = 0; n < boundary.patches.size(); ++n) {
-        const std::int32_t p = boundary.patches[n].primitive;
-        if (p >= 0 && static_cast<std::size_t>(p) < seen_on_.size()) seen_on_[p].push_back(n);
-    }
-}
+    : b_(boundary), object_of_(object_of_primitive), h_(voxel_m), seen_on_(boundary.patches) {}
 
 template <class Do>
 void ObjectEntries::each(const ObjectVoxel& voxel, Do what) const {
-    for (std::size_t n = voxel.first; n < voxel.last; ++n) {
-        const std::int32_t p = b_.primitive[n];
-        const bool known = p >= 0 && static_cast<std::size_t>(p) < object_of_.size();
-        const std::int32_t object = known ? object_of_[p] : -1;
-        if (object == voxel.object) what(n);
-    }
+    for (std::size_t n = voxel.first; n < voxel.last; ++n)
+        if (object_of(b_.primitive[n], object_of_) == voxel.object) what(n);
 }
 
 std::optional<Facet> ObjectEntries::way_out(const ObjectVoxel& voxel, const Vec3& start,
@@ -96,9 +84,8 @@ std::optional<Facet> ObjectEntries::beside(std::int32_t primitive, const Vec3& a
                                            int sign) const {
     constexpr double facing = 0.3;  // cosine
     std::optional<Facet> out;
-    if (primitive < 0 || static_cast<std::size_t>(primitive) >= seen_on_.size()) return out;
     double least = h_;
-    for (const std::uint32_t n : seen_on_[primitive]) {
+    for (const std::uint32_t n : seen_on_(primitive)) {
         const double away = std::abs(b_.patches[n].distance(at));
         if (away >= least) continue;
         const Vec3 g = b_.patches[n].gradient(at);
@@ -132,8 +119,7 @@ Facet facet_of(const VoxelFace& face, std::span<const ObjectVoxel> voxels,
     const auto end = [&](const Vec3& start) {
         return face.sign() * (side - start[axis]) + beyond_side * h;
     };
-    Vec3 middle{};
-    for (std::size_t a = 0; a < 3; ++a) middle[a] = (voxel.at[a] + 0.5) * h;
+    Vec3 middle = middle_of(voxel.at, h);
     std::optional<Facet> found;
     if (!voxel.whole) {
         entries.middles(voxel, starts);

@@ -10,6 +10,7 @@
 #include "core/thread_pool.h"
 #include "solids/block_surface.h"
 #include "solids/object_voxels.h"
+#include "solids/solid_places.h"
 
 // Which patch each face of an object's voxels stands for. Grid frame, metres.
 namespace topple::solids {
@@ -57,7 +58,7 @@ class ObjectEntries {
     const BoundaryCells& b_;
     std::span<const std::int32_t> object_of_;
     double h_;
-    std::vector<std::vector<std::uint32_t>> seen_on_;  // patches of each primitive
+    PatchesSeenOn seen_on_;
 };
 
 // Of each face.

@@ -2,36 +2,56 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "solids/rows.h"
 #include "topple/cloud_view.h"
 #include "topple/input.h"
 
 namespace topple::solids {
 
-// A cloud's points in the grid frame, whose axes are these in the cloud's.
-inline Eigen::Vector3d rotated(const std::array<Vec3, 3>& axes, double x, double y, double z) {
-    Eigen::Vector3d out;
-    for (int a = 0; a < 3; ++a) {
-        const Vec3& row = axes[a];
-        out[a] = row[0] * x + row[1] * y + row[2] * z;
-    }
-    return out;
-}
+// A cloud's points in the grid frame. The cloud's must stay where they are.
+class GridPoints {
+  public:
+    // axes: of the grid frame, in the cloud's.
+    GridPoints(const CloudView& cloud, const std::array<Vec3, 3>& axes)
+        : x_(cloud.x), y_(cloud.y), z_(cloud.z), axes_(axes) {}
 
-// The points of each label, ascending; -1 is none.
-inline Rows<std::uint32_t> points_by_label(std::span<const std::int32_t> label,
-                                           std::size_t labels) {
-    return {labels, [&](const auto& add) {
-                for (std::uint32_t n = 0; n < label.size(); ++n)
-                    if (label[n] >= 0) add(static_cast<std::size_t>(label[n]), n);
-            }};
-}
+    const std::array<Vec3, 3>& axes() const { return axes_; }
+    std::size_t size() const { return x_.size(); }
+    Eigen::Vector3d operator[](std::size_t n) const {
+        const double x = x_[n], y = y_[n], z = z_[n];
+        Eigen::Vector3d out;
+        for (int a = 0; a < 3; ++a) out[a] = axes_[a][0] * x + axes_[a][1] * y + axes_[a][2] * z;
+        return out;
+    }
+    // Every so many of them, the same ones in whatever order they come.
+    bool is_chosen(std::size_t n, std::size_t step) const {
+        std::uint64_t mixed = 0;
+        for (const float v : {x_[n], y_[n], z_[n]})
+            mixed = (mixed ^ std::bit_cast<std::uint32_t>(v)) * 0x9e3779b97f4a7c15U;
+        return (mixed >> 32) % step == 0;
+    }
+
+  private:
+    FloatColumn x_, y_, z_;
+    std::array<Vec3, 3> axes_;
+};
+
+// Labels of points, -1 for none.
+struct PointLabels {
+    std::vector<std::int32_t> primitive, patch;
+    // Of each of so many patches the highest primitive that its points have.
+    std::vector<std::int32_t> primitive_of_patch(std::size_t patches) const {
+        std::vector<std::int32_t> out(patches, -1);
+        for (std::size_t n = 0; n < patch.size(); ++n)
+            if (patch[n] >= 0) out[patch[n]] = std::max(out[patch[n]], primitive[n]);
+        return out;
+    }
+};
 
 // Parts, in their order.
 template <class T>
@@ -39,14 +59,6 @@ std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
     std::vector<T> out;
     for (const std::vector<T>& part : parts) out.insert(out.end(), part.begin(), part.end());
     return out;
-}
-
-// Every so many of the points, the same ones in whatever order they come.
-inline bool is_chosen(const CloudView& cloud, std::size_t n, std::size_t step) {
-    std::uint64_t mixed = 0;
-    for (const float v : {cloud.x[n], cloud.y[n], cloud.z[n]})
-        mixed = (mixed ^ std::bit_cast<std::uint32_t>(v)) * 0x9e3779b97f4a7c15U;
-    return (mixed >> 32) % step == 0;
 }
 
 }  // namespace topple::solids

@@ -6,9 +6,9 @@
 #include <map>
 #include <tuple>
 
+#include "core/sort_unique.h"
 #include "solids/boundary.h"
-#include "solids/place.h"
-#include "solids/sort_unique.h"
+#include "solids/solid_places.h"
 
 namespace topple::solids {
 namespace {
@@ -64,17 +64,17 @@ class MateFinder {
             const auto patch = static_cast<std::uint32_t>(seen.patch[n]);
             auto& own = of_primitive_[seen.primitive[n]];
             if (own.empty() || own.back() != patch) own.push_back(patch);
-            extent_[patch].add({seen.i[n], seen.j[n], seen.k[n]});
+            extent_[patch].add(place_of(seen, n));
         }
         for (auto& own : of_primitive_) sort_unique(own);
     }
 
-    void add_rests(std::span<const KnownRest> rests) {
-        for (const KnownRest& r : rests) {
+    void add(std::span<const Ledge> ledges) {
+        for (const Ledge& l : ledges) {
             SurfacePatch level;
-            level.origin = {0, 0, r.height_m};
+            level.origin = {0, 0, l.height_m};
             level.c = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0};
-            rests_[{r.above, r.below}].push_back(static_cast<std::uint32_t>(patches_.size()));
+            ledges_[{l.above, l.below}].push_back(static_cast<std::uint32_t>(patches_.size()));
             patches_.push_back(level);
         }
     }
@@ -88,23 +88,17 @@ class MateFinder {
         std::vector<Mate> all;
         for (const std::vector<Mate>& some : found) {
             const auto middle = all.insert(all.end(), some.begin(), some.end());
-            std::inplace_merge(all.begin(), middle, all.end(), [](const Mate& a, const Mate& b) {
-                return order_of(a) < order_of(b);
-            });
+            std::ranges::inplace_merge(all, middle, {}, order_of);
         }
-        const auto same = [](const Mate& a, const Mate& b) {
-            return std::tie(a.i, a.j, a.k, a.primitive, a.patch, a.outside) ==
-                   std::tie(b.i, b.j, b.k, b.primitive, b.patch, b.outside);
-        };
-        all.erase(std::unique(all.begin(), all.end(), same), all.end());
+        const auto others = std::ranges::unique(
+            all, {}, [](const Mate& m) { return std::tuple(m.key(), m.patch, m.outside); });
+        all.erase(others.begin(), others.end());
         return all;
     }
 
   private:
-    static std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, std::uint32_t, bool,
-                      bool>
-    order_of(const Mate& m) {
-        return {m.i, m.j, m.k, m.primitive, m.patch, m.outside, !m.extends};
+    static std::tuple<BorderKey, std::uint32_t, bool, bool> order_of(const Mate& m) {
+        return {m.key(), m.patch, m.outside, !m.extends};
     }
 
     // The cell beside each, one way along an axis, across one empty voxel at most.
@@ -159,8 +153,8 @@ class MateFinder {
                 if (extent_[patch].meets(side.box)) candidates.push_back({patch, q, true});
             }
             if (axis != 2) continue;
-            const auto known = rests_.find(way < 0 ? std::pair(p, q) : std::pair(q, p));
-            if (known == rests_.end()) continue;
+            const auto known = ledges_.find(way < 0 ? std::pair(p, q) : std::pair(q, p));
+            if (known == ledges_.end()) continue;
             for (const std::uint32_t patch : known->second)
                 candidates.push_back({patch, q, way < 0});
         }
@@ -185,9 +179,8 @@ class MateFinder {
     }
 
     Vec3 middle_of(std::size_t n, std::size_t axis, int way) const {
-        const double h = cells_.voxel_m;
-        Vec3 at{(cells_.i[n] + 0.5) * h, (cells_.j[n] + 0.5) * h, (cells_.k[n] + 0.5) * h};
-        at[axis] += 0.5 * way * h;
+        Vec3 at = topple::middle_of(place_of(cells_, n), cells_.voxel_m);
+        at[axis] += 0.5 * way * cells_.voxel_m;
         return at;
     }
 
@@ -200,11 +193,11 @@ class MateFinder {
         const Place from = place_of(cells_, n);
         for (std::int32_t step = -2; step <= 2; ++step) {
             const Place at = moved(from, axis, way * step);
-            const Vec3 middle{(at[0] + 0.5) * h, (at[1] + 0.5) * h, (at[2] + 0.5) * h};
+            const Vec3 middle = topple::middle_of(at, h);
             const double d = (c.outside ? -1 : 1) * patch.distance(middle);
             const double half = reach_of(patch.gradient(middle), h);
             if (step <= 0 ? d > -half : d < half)
-                mates.push_back({at[0], at[1], at[2], p, c.patch, c.outside, step > 0});
+                mates.push_back({at, p, c.patch, c.outside, step > 0});
         }
     }
 
@@ -214,7 +207,7 @@ class MateFinder {
     std::vector<Box> extent_;  // of each patch, where it was seen
     std::int32_t primitives_ = 0;
     std::vector<std::vector<std::uint32_t>> of_primitive_;  // patches, ascending
-    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::uint32_t>> rests_;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::uint32_t>> ledges_;
 };
 
 }  // namespace
@@ -235,10 +228,10 @@ double reach_of(const Vec3& g, double voxel_m) {
 }
 
 std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
-                             std::span<const std::uint8_t> faced, std::span<const KnownRest> rests,
+                             std::span<const std::uint8_t> faced, std::span<const Ledge> ledges,
                              std::vector<SurfacePatch>& patches, ThreadPool& threads) {
     MateFinder finder(cells, seen, faced, patches);
-    finder.add_rests(rests);
+    finder.add(ledges);
     return finder.find(threads);
 }
 

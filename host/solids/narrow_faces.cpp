@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "core/sort_unique.h"
 #include "core/union_find.h"
 #include "solids/explaining.h"
-#include "solids/grid_points.h"
 #include "solids/patch_map.h"
 #include "solids/patches.h"
 #include "solids/plane_through.h"
@@ -20,22 +20,14 @@ namespace {
 // A point of a primitive that no patch explains.
 struct Left {
     std::int32_t primitive;
-    std::array<std::int32_t, 3> cell;
+    Place cell;
     Eigen::Vector3d at;
     std::uint32_t point;
     auto order() const { return std::tuple(primitive, cell, at.x(), at.y(), at.z()); }
 };
 
-// A primitive in a cell, and in the cells around.
-using Key = std::pair<std::int32_t, std::array<std::int32_t, 3>>;
-std::array<Key, 27> around(const Key& key) {
-    std::array<Key, 27> out;
-    for (std::int32_t n = 0; n < 27; ++n)
-        out[n] = {
-            key.first,
-            {key.second[0] + n / 9 - 1, key.second[1] + n / 3 % 3 - 1, key.second[2] + n % 3 - 1}};
-    return out;
-}
+// A primitive in a cell.
+using Key = std::pair<std::int32_t, Place>;
 
 // A key, and the first place that has it.
 using FirstOfKey = std::pair<Key, std::size_t>;
@@ -50,7 +42,8 @@ std::vector<std::size_t> pieces_of(std::span<const Left> left) {
         pieces.join(n, first.back().second);
     }
     for (const auto& [key, n] : first) {
-        for (const Key& beside : around(key)) {
+        for (const Place& cell : around(key.second)) {
+            const Key beside(key.first, cell);
             if (!(beside < key)) continue;  // which finds this one
             const auto found = std::ranges::lower_bound(first, beside, {}, &FirstOfKey::first);
             if (found != first.end() && found->first == beside) pieces.join(n, found->second);
@@ -92,10 +85,8 @@ constexpr std::uint64_t point_chunk = 1 << 14;  // points handed to a thread at 
 using FaceNear = std::pair<Key, std::size_t>;
 
 // Counts for each face the points of its primitive nearby that lie before and behind it.
-void count_sides(const CloudView& cloud, const std::array<Vec3, 3>& axes, const PatchMap& map,
-                 std::span<const FaceNear> beside, std::span<const std::int32_t> primitive_of_point,
-                 std::span<const std::int32_t> patch_of_point, std::span<NarrowFace> faces,
-                 ThreadPool& threads) {
+void count_sides(const GridPoints& points, const PatchMap& map, std::span<const FaceNear> beside,
+                 const PointLabels& labels, std::span<NarrowFace> faces, ThreadPool& threads) {
     std::vector<bool> asked;  // by primitive
     for (const NarrowFace& face : faces) {
         const auto p = static_cast<std::size_t>(face.primitive);
@@ -105,15 +96,15 @@ void count_sides(const CloudView& cloud, const std::array<Vec3, 3>& axes, const 
     struct Count {
         std::size_t before = 0, behind = 0;
     };
-    std::vector<std::vector<Count>> parts(cloud.size() / point_chunk + 1);
-    threads.run(cloud.size(), point_chunk, [&](std::uint64_t first, std::uint64_t last) {
+    std::vector<std::vector<Count>> parts(points.size() / point_chunk + 1);
+    threads.run(points.size(), point_chunk, [&](std::uint64_t first, std::uint64_t last) {
         std::vector<Count>& part = parts[first / point_chunk];
         part.resize(faces.size());
         for (std::uint64_t n = first; n < last; ++n) {
-            const auto p = static_cast<std::size_t>(primitive_of_point[n]);
-            if (patch_of_point[n] < 0 || p >= asked.size() || !asked[p]) continue;
-            const Eigen::Vector3d at = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
-            const Key key{primitive_of_point[n], map.cell_of(at)};
+            const auto p = static_cast<std::size_t>(labels.primitive[n]);
+            if (labels.patch[n] < 0 || p >= asked.size() || !asked[p]) continue;
+            const Eigen::Vector3d at = points[n];
+            const Key key{labels.primitive[n], map.cell_of(at)};
             for (auto near = std::ranges::lower_bound(beside, key, {}, &FaceNear::first);
                  near != beside.end() && near->first == key; ++near) {
                 const SurfacePatch& patch = faces[near->second].patch;
@@ -133,38 +124,28 @@ void count_sides(const CloudView& cloud, const std::array<Vec3, 3>& axes, const 
 
 }  // namespace
 
-void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, double cell_m,
-                      std::vector<SurfacePatch>& patches,
-                      std::vector<std::int32_t>& primitive_of_point,
-                      std::vector<std::int32_t>& patch_of_point, ThreadPool& threads) {
-    const PatchMap map(cloud, patch_of_point, primitive_of_point, axes, cell_m, threads);
-    const auto point = [&](std::size_t n) {
-        return rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
-    };
-    std::vector<std::int32_t> primitive(patches.size(), -1);
-    for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
-        if (patch_of_point[n] < 0) continue;
-        std::int32_t& of = primitive[patch_of_point[n]];
-        of = std::max(of, primitive_of_point[n]);
-    }
-    std::vector<std::vector<Left>> parts(cloud.size() / point_chunk + 1);
-    threads.run(cloud.size(), point_chunk, [&](std::uint64_t first, std::uint64_t last) {
+void add_narrow_faces(const GridPoints& points, double cell_m, std::vector<SurfacePatch>& patches,
+                      PointLabels& labels, ThreadPool& threads) {
+    const PatchMap map(points, labels.patch, labels.primitive, cell_m, threads);
+    const std::vector<std::int32_t> primitive = labels.primitive_of_patch(patches.size());
+    std::vector<std::vector<Left>> parts(points.size() / point_chunk + 1);
+    threads.run(points.size(), point_chunk, [&](std::uint64_t first, std::uint64_t last) {
         std::vector<std::int32_t> room;
         for (std::uint64_t n = first; n < last; ++n) {
-            if (primitive_of_point[n] < 0) continue;
-            const Eigen::Vector3d at = point(n);
-            if (patch_of_point[n] >= 0) {
-                const SurfacePatch& own = patches[patch_of_point[n]];
+            if (labels.primitive[n] < 0) continue;
+            const Eigen::Vector3d at = points[n];
+            if (labels.patch[n] >= 0) {
+                const SurfacePatch& own = patches[labels.patch[n]];
                 if (!(std::abs(distance_to(own, at)) > outlier * own.noise_m)) continue;
             }
             const std::int32_t other =
                 explaining(patches, map.around(at, room), at, [](std::int32_t) { return true; });
             if (other >= 0) {
-                patch_of_point[n] = other;
-                primitive_of_point[n] = primitive[other];
+                labels.patch[n] = other;
+                labels.primitive[n] = primitive[other];
             } else {
                 parts[first / point_chunk].push_back(
-                    {primitive_of_point[n], map.cell_of(at), at, static_cast<std::uint32_t>(n)});
+                    {labels.primitive[n], map.cell_of(at), at, static_cast<std::uint32_t>(n)});
             }
         }
     });
@@ -180,9 +161,9 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         if (all.size() < least_points) continue;
         const std::vector<std::size_t> one_a_cell = firsts_of_cells(left, all);
         constexpr double enough = 0.8;  // share of the points that the plane explains
-        std::vector<Eigen::Vector3d> points;
-        for (const std::size_t n : all) points.push_back(left[n].at);
-        NarrowFace face{patch_through(points), left[number].primitive, {}};
+        std::vector<Eigen::Vector3d> own;
+        for (const std::size_t n : all) own.push_back(left[n].at);
+        NarrowFace face{patch_through(own), left[number].primitive, {}};
         for (const std::size_t n : all)
             if (std::abs(distance_to(face.patch, left[n].at)) <= outlier * face.patch.noise_m)
                 face.points.push_back(left[n].point);
@@ -195,14 +176,13 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         }
         if (face.patch.noise_m > noise) continue;
         for (const std::size_t n : one_a_cell)
-            for (const Key& key : around({face.primitive, left[n].cell}))
-                beside.emplace_back(key, faces.size());
+            for (const Place& cell : around(left[n].cell))
+                beside.emplace_back(Key(face.primitive, cell), faces.size());
         faces.push_back(std::move(face));
     }
     if (faces.empty()) return;
-    std::ranges::sort(beside);
-    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
-    count_sides(cloud, axes, map, beside, primitive_of_point, patch_of_point, faces, threads);
+    sort_unique(beside);
+    count_sides(points, map, beside, labels, faces, threads);
     for (NarrowFace& face : faces) {
         constexpr double most_before = 0.05;  // share
         if (face.before > face.behind) {
@@ -212,7 +192,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         if (static_cast<double>(face.before) > most_before * static_cast<double>(face.behind))
             continue;
         for (const std::uint32_t n : face.points)
-            patch_of_point[n] = static_cast<std::int32_t>(patches.size());
+            labels.patch[n] = static_cast<std::int32_t>(patches.size());
         patches.push_back(face.patch);
     }
 }

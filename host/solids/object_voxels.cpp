@@ -7,8 +7,9 @@
 #include <limits>
 #include <optional>
 
+#include "core/sort_unique.h"
 #include "core/vectors.h"
-#include "solids/place.h"
+#include "solids/solid_places.h"
 
 namespace topple::solids {
 namespace {
@@ -39,15 +40,7 @@ void add(std::int32_t object, std::int32_t primitive, std::uint32_t share, bool 
 class LayersBehind {
   public:
     LayersBehind(const SolidCells& cells, const BoundaryCells& boundary)
-        : cells_(cells), b_(boundary) {
-        for (std::uint32_t n = 0; n < boundary.patches.size(); ++n) {
-            const std::int32_t p = boundary.patches[n].primitive;
-            if (p < 0) continue;
-            if (static_cast<std::size_t>(p) >= patches_of_.size())
-                patches_of_.resize(static_cast<std::size_t>(p) + 1);
-            patches_of_[p].push_back(n);
-        }
-    }
+        : cells_(cells), b_(boundary), seen_on_(boundary.patches) {}
 
     // Fills those of one object's voxels, sorted, and returns those to be added. Where a layer of
     // single voxels goes over into the one behind, both are there, so that they hang together.
@@ -78,9 +71,7 @@ class LayersBehind {
                 }
             }
         }
-        std::ranges::stable_sort(out, {}, &ObjectVoxel::at);
-        const auto same = [](const ObjectVoxel& a, const ObjectVoxel& b) { return a.at == b.at; };
-        out.erase(std::unique(out.begin(), out.end(), same), out.end());
+        sort_unique(out, &ObjectVoxel::at);
         return out;
     }
 
@@ -106,10 +97,8 @@ class LayersBehind {
     // To the other side of the primitive's patch beside it.
     std::optional<Step> behind(const ObjectVoxel& v) const {
         std::optional<Step> out;
-        if (v.primitive < 0 || static_cast<std::size_t>(v.primitive) >= patches_of_.size())
-            return out;
         double nearest = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t n : patches_of_[v.primitive]) {
+        for (const std::uint32_t n : seen_on_(v.primitive)) {
             const std::optional<Beside> b = beside(b_.patches[n], v.at);
             if (!b || b->away >= nearest) continue;
             nearest = b->away;
@@ -134,9 +123,8 @@ class LayersBehind {
             }
             return false;
         };
-        for (int n = 0; n < 27; ++n) {
-            const ObjectVoxel* v =
-                find_at(voxels, {at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1});
+        for (const Place& near : around(at)) {
+            const ObjectVoxel* v = find_at(voxels, near);
             if (!v) continue;
             for (std::size_t m = v->first; m < v->last; ++m)
                 if (b_.primitive[m] == step.from->primitive && ends(m)) return true;
@@ -152,7 +140,7 @@ class LayersBehind {
     std::optional<Beside> beside(const SurfacePatch& patch, const Place& at) const {
         constexpr double slack = 0.1;  // voxels
         const double h = cells_.voxel_m;
-        const Vec3 middle{(at[0] + 0.5) * h, (at[1] + 0.5) * h, (at[2] + 0.5) * h};
+        const Vec3 middle = middle_of(at, h);
         const double d = patch.distance(middle);
         if (d < 0 || d > h) return std::nullopt;
         const Vec3 g = unit(patch.gradient(middle));
@@ -167,7 +155,7 @@ class LayersBehind {
 
     const SolidCells& cells_;
     const BoundaryCells& b_;
-    std::vector<std::vector<std::uint32_t>> patches_of_;
+    PatchesSeenOn seen_on_;
 };
 
 // Gives each object the layers behind its own.
@@ -189,41 +177,30 @@ void add_layers_behind(const SolidCells& cells, const BoundaryCells& boundary,
 
 std::vector<ObjectVoxel> object_voxels(const SolidCells& cells, const BoundaryCells& b,
                                        std::span<const std::int32_t> object_of_primitive) {
-    const auto object_of = [&](std::int32_t p) {
-        return p >= 0 && static_cast<std::size_t>(p) < object_of_primitive.size()
-                   ? object_of_primitive[p]
-                   : std::int32_t{-1};
-    };
+    const auto object = [&](std::int32_t p) { return object_of(p, object_of_primitive); };
     std::vector<ObjectVoxel> out;
     std::vector<Share> here;
-    std::size_t n = 0, m = 0;
-    while (n < cells.size() || m < b.size()) {
-        const auto cell = [&] { return place_of(cells, n); };
-        const auto part = [&] { return place_of(b, m); };
-        const auto at = n == cells.size() ? part()
-                        : m == b.size()   ? cell()
-                                          : std::min(cell(), part());
-        const bool is_cell = n < cells.size() && cell() == at;
-        bool bounded = false;
-        here.clear();
-        const std::size_t first = m;
-        for (; m < b.size() && part() == at; ++m) {
-            const bool own = is_cell && b.primitive[m] == cells.primitive[n];
-            add(object_of(b.primitive[m]), b.primitive[m], b.share[m], own, here);
-            bounded = bounded || own;
-        }
-        if (is_cell && !bounded) {
-            add(object_of(cells.primitive[n]), cells.primitive[n], BoundaryCells::whole, true,
-                here);
-            std::ranges::find(here, object_of(cells.primitive[n]), &Share::object)->whole = true;
-        }
-        for (const Share& s : here) {
-            if (s.share == 0 && !s.cell) continue;
-            out.push_back({s.object, s.primitive, at, static_cast<std::uint32_t>(first),
-                           static_cast<std::uint32_t>(m), s.cell, s.whole, s.share >= sliver});
-        }
-        n += is_cell;
-    }
+    each_solid_place(
+        cells, b, [&](const Place& at, std::size_t n, std::size_t first, std::size_t last) {
+            bool bounded = false;
+            here.clear();
+            for (std::size_t m = first; m < last; ++m) {
+                const bool own = n != no_cell && b.primitive[m] == cells.primitive[n];
+                add(object(b.primitive[m]), b.primitive[m], b.share[m], own, here);
+                bounded = bounded || own;
+            }
+            if (n != no_cell && !bounded) {
+                const std::int32_t p = cells.primitive[n];
+                add(object(p), p, BoundaryCells::whole, true, here);
+                std::ranges::find(here, object(p), &Share::object)->whole = true;
+            }
+            for (const Share& s : here) {
+                if (s.share == 0 && !s.cell) continue;
+                out.push_back({s.object, s.primitive, at, static_cast<std::uint32_t>(first),
+                               static_cast<std::uint32_t>(last), s.cell, s.whole,
+                               s.share >= sliver});
+            }
+        });
     std::ranges::stable_sort(out, {}, &ObjectVoxel::object);
     add_layers_behind(cells, b, out);
     return out;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,13 +14,20 @@ namespace topple::solids {
 struct ObjectVoxel {
     std::int32_t object = -1;
     std::int32_t primitive = -1;  // the one of it that fills most
-    std::array<std::int32_t, 3> at{};
+    Place at{};
     // The entries of BoundaryCells there, of whichever objects.
     std::uint32_t first = 0, last = 0;
     bool cell = false;    // a cell of one of the object's primitives
     bool whole = false;   // the boundary says nothing of it
     bool filled = false;  // more of it is solid than a sliver
 };
+
+// Of a primitive; -1 where it is none, or the span ends.
+inline std::int32_t object_of(std::int32_t primitive,
+                              std::span<const std::int32_t> object_of_primitive) {
+    const auto p = static_cast<std::size_t>(primitive);
+    return primitive >= 0 && p < object_of_primitive.size() ? object_of_primitive[p] : -1;
+}
 
 // Where a layer of cells ends at a patch in its own back half, so that little of it is left, the
 // layer behind is filled, too: the surface that was seen has no hole there.

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "solids/grid_points.h"
-#include "solids/sort_unique.h"
+#include "core/sort_unique.h"
 
 namespace topple::solids {
 namespace {
@@ -17,7 +16,7 @@ constexpr std::uint64_t map_chunk = 1 << 14;  // points or cells handed to a thr
 using Sighting = std::pair<std::uint64_t, std::int32_t>;  // a cell's key, a patch
 
 // 21 bits of each; cells that share a key are far from one another.
-std::uint64_t cell_key(const std::array<std::int32_t, 3>& at) {
+std::uint64_t cell_key(const Place& at) {
     std::uint64_t out = 0;
     for (const std::int32_t a : at) out = out << 21 | (static_cast<std::uint32_t>(a) & 0x1fffff);
     return out;
@@ -25,17 +24,15 @@ std::uint64_t cell_key(const std::array<std::int32_t, 3>& at) {
 
 }  // namespace
 
-PatchMap::PatchMap(const CloudView& cloud, std::span<const std::int32_t> patch_of_point,
-                   std::span<const std::int32_t> counts, const std::array<Vec3, 3>& axes,
-                   double cell_m, ThreadPool& threads)
+PatchMap::PatchMap(const GridPoints& points, std::span<const std::int32_t> patch_of_point,
+                   std::span<const std::int32_t> counts, double cell_m, ThreadPool& threads)
     : cell_m_(cell_m) {
-    std::vector<std::vector<Sighting>> parts(cloud.size() / map_chunk + 1);
-    threads.run(cloud.size(), map_chunk, [&](std::uint64_t first, std::uint64_t last) {
+    std::vector<std::vector<Sighting>> parts(points.size() / map_chunk + 1);
+    threads.run(points.size(), map_chunk, [&](std::uint64_t first, std::uint64_t last) {
         std::vector<Sighting>& part = parts[first / map_chunk];
         for (std::uint64_t n = first; n < last; ++n) {
             if (patch_of_point[n] < 0 || counts[n] < 0) continue;
-            const Sighting s(cell_key(cell_of(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]))),
-                             patch_of_point[n]);
+            const Sighting s(cell_key(cell_of(points[n])), patch_of_point[n]);
             if (part.empty() || part.back() != s) part.push_back(s);  // as most points of a scan
         }
         sort_unique(part);
@@ -54,8 +51,8 @@ PatchMap::PatchMap(const CloudView& cloud, std::span<const std::int32_t> patch_o
     gather_all(threads);
 }
 
-std::array<std::int32_t, 3> PatchMap::cell_of(const Eigen::Vector3d& p) const {
-    std::array<std::int32_t, 3> out{};
+Place PatchMap::cell_of(const Eigen::Vector3d& p) const {
+    Place out{};
     for (int a = 0; a < 3; ++a)
         out[a] = static_cast<std::int32_t>(std::clamp(std::floor(p[a] / cell_m_), -2e9, 2e9));
     return out;
@@ -63,7 +60,7 @@ std::array<std::int32_t, 3> PatchMap::cell_of(const Eigen::Vector3d& p) const {
 
 std::span<const std::int32_t> PatchMap::around(const Eigen::Vector3d& p,
                                                std::vector<std::int32_t>& room) const {
-    const std::array<std::int32_t, 3> at = cell_of(p);
+    const Place at = cell_of(p);
     const std::uint32_t cell = find(cell_key(at));
     if (cell != none)
         return std::span(near_).subspan(near_first_[cell],
@@ -88,11 +85,10 @@ void PatchMap::hash_cells() {
     }
 }
 
-void PatchMap::gather(const std::array<std::int32_t, 3>& at, std::vector<std::int32_t>& out) const {
+void PatchMap::gather(const Place& at, std::vector<std::int32_t>& out) const {
     out.clear();
-    for (std::int32_t n = 0; n < 27; ++n) {
-        const std::uint32_t cell =
-            find(cell_key({at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1}));
+    for (const Place& beside : topple::around(at)) {
+        const std::uint32_t cell = find(cell_key(beside));
         if (cell == none) continue;
         for (const std::int32_t patch : seen_in(cell))
             if (std::ranges::find(out, patch) == out.end()) out.push_back(patch);

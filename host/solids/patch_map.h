@@ -2,14 +2,13 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/place.h"
 #include "core/thread_pool.h"
-#include "topple/cloud_view.h"
-#include "topple/input.h"
+#include "solids/grid_points.h"
 
 namespace topple::solids {
 
@@ -17,11 +16,10 @@ namespace topple::solids {
 class PatchMap {
   public:
     // Of the points that have a patch, and that `counts` allows; -1 is no patch.
-    PatchMap(const CloudView& cloud, std::span<const std::int32_t> patch_of_point,
-             std::span<const std::int32_t> counts, const std::array<Vec3, 3>& axes, double cell_m,
-             ThreadPool& threads);
+    PatchMap(const GridPoints& points, std::span<const std::int32_t> patch_of_point,
+             std::span<const std::int32_t> counts, double cell_m, ThreadPool& threads);
 
-    std::array<std::int32_t, 3> cell_of(const Eigen::Vector3d& p) const;
+    Place cell_of(const Eigen::Vector3d& p) const;
     // In the cell of a point, and those beside it: ascending, each once. Kept in `room` where
     // nothing was seen in the cell itself.
     std::span<const std::int32_t> around(const Eigen::Vector3d& p,
@@ -34,7 +32,7 @@ class PatchMap {
     std::span<const std::int32_t> seen_in(std::uint32_t cell) const {
         return std::span(patch_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
     }
-    void gather(const std::array<std::int32_t, 3>& at, std::vector<std::int32_t>& out) const;
+    void gather(const Place& at, std::vector<std::int32_t>& out) const;
     void hash_cells();
     void gather_all(ThreadPool& threads);
 

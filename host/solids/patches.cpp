@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "core/ranked.h"
+#include "core/rows.h"
 #include "geometry/algebraic_model.h"
-#include "solids/grid_points.h"
 #include "solids/plane_through.h"
 
 namespace topple::solids {
@@ -194,21 +194,19 @@ SurfacePatch fit_patch(geometry::AlgebraicModel model, double residual_m,
     return out;
 }
 
-std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
+std::vector<SurfacePatch> fit_patches(const GridPoints& points,
                                       std::span<const geometry::Region> regions,
                                       std::span<const std::int32_t> region_of_point,
-                                      const std::array<Vec3, 3>& axes, ThreadPool& threads) {
-    const auto members = points_by_label(region_of_point, regions.size());
+                                      ThreadPool& threads) {
+    const auto members = places_by_label(region_of_point, regions.size());
     std::vector<SurfacePatch> out(regions.size());
     threads.each(regions.size(), 16, [&](std::size_t r) {
         const std::size_t step = members[r].size() / most_points + 1;
-        Points points;
-        for (const std::uint32_t n : members[r]) {
-            if (is_chosen(cloud, n, step))
-                points.push_back(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]));
-        }
-        sort(points);
-        out[r] = fit_patch(rotated(regions[r].model, axes), regions[r].residual_m, points);
+        Points chosen;
+        for (const std::uint32_t n : members[r])
+            if (points.is_chosen(n, step)) chosen.push_back(points[n]);
+        sort(chosen);
+        out[r] = fit_patch(rotated(regions[r].model, points.axes()), regions[r].residual_m, chosen);
     });
     return out;
 }

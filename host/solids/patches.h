@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "core/boundary_cells.h"
 #include "core/thread_pool.h"
 #include "geometry/segmentation.h"
-#include "topple/cloud_view.h"
+#include "solids/grid_points.h"
 
 // From the seen surface to solids that are finer than their voxels. Grid frame: metres, z up.
 namespace topple::solids {
@@ -27,30 +26,25 @@ SurfacePatch fit_patch(geometry::AlgebraicModel model, double residual_m,
 
 // The regions' models, fitted anew to the points themselves: surfels at edges lie inside of both
 // faces. Points that a region only borders on are told from its own by their distance, in robust
-// standard deviations. region_of_point: -1 for none. axes: rows of the rotation from the cloud's
-// frame to the grid's.
-std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
+// standard deviations. region_of_point: -1 for none.
+std::vector<SurfacePatch> fit_patches(const GridPoints& points,
                                       std::span<const geometry::Region> regions,
                                       std::span<const std::int32_t> region_of_point,
-                                      const std::array<Vec3, 3>& axes, ThreadPool& threads);
+                                      ThreadPool& threads);
 
 // Surfels at an edge make narrow regions of their own there, askew to both faces. A patch whose
 // points larger ones beside it explain is none, nor is one within a surfel of two much larger ones
 // that faces between them: its points become theirs, and what these leave belongs to no patch.
-// Labels are of points, -1 for none; cell_m: about twice the surfels' edge.
-void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patches,
-                    const std::array<Vec3, 3>& axes, double cell_m,
-                    std::vector<std::int32_t>& primitive_of_point,
-                    std::vector<std::int32_t>& patch_of_point, ThreadPool& threads);
+// cell_m: about twice the surfels' edge.
+void drop_explained(const GridPoints& points, std::span<const SurfacePatch> patches, double cell_m,
+                    PointLabels& labels, ThreadPool& threads);
 
 // Faces too narrow for regions of their own, as the rim of a cup. Points that lie off their patch
 // go to the nearest one beside it that explains them. Where those left over within a primitive hang
 // together in one plane, all of the primitive around them behind it, that plane is added to the
 // patches. Arguments as of drop_explained(), after it.
-void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, double cell_m,
-                      std::vector<SurfacePatch>& patches,
-                      std::vector<std::int32_t>& primitive_of_point,
-                      std::vector<std::int32_t>& patch_of_point, ThreadPool& threads);
+void add_narrow_faces(const GridPoints& points, double cell_m, std::vector<SurfacePatch>& patches,
+                      PointLabels& labels, ThreadPool& threads);
 
 // Where the patches were seen: of each voxel, primitive and patch the points' number and mean.
 // Sorted by (i, j, k, primitive, patch).
@@ -59,9 +53,8 @@ struct SeenCells {
     std::vector<float> count, x, y, z;
     std::size_t size() const { return i.size(); }
 };
-SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
-                     std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
-                     double voxel_m, ThreadPool& threads);
+SeenCells seen_cells(const GridPoints& points, const PointLabels& labels, double voxel_m,
+                     ThreadPool& threads);
 
 // Length of the mean normal of what faces one way, at least.
 inline constexpr double one_way = 0.95;

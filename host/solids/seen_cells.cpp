@@ -6,7 +6,7 @@
 #include <functional>
 #include <tuple>
 
-#include "solids/grid_points.h"
+#include "core/rows.h"
 #include "solids/patches.h"
 
 namespace topple::solids {
@@ -41,11 +41,7 @@ struct SeenMean {
     std::uint64_t ij, k_primitive;
     std::int32_t patch;
     float count, x, y, z;
-    bool operator<(const SeenMean& o) const {
-        if (ij != o.ij) return ij < o.ij;
-        if (k_primitive != o.k_primitive) return k_primitive < o.k_primitive;
-        return patch < o.patch;
-    }
+    auto order() const { return std::tuple(ij, k_primitive, patch); }
 };
 
 void add_means(std::span<const SeenPoint> sorted, std::int32_t patch, std::vector<SeenMean>& out) {
@@ -68,12 +64,11 @@ void add_means(std::span<const SeenPoint> sorted, std::int32_t patch, std::vecto
 
 }  // namespace
 
-SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
-                     std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
-                     double voxel_m, ThreadPool& threads) {
+SeenCells seen_cells(const GridPoints& points, const PointLabels& labels, double voxel_m,
+                     ThreadPool& threads) {
     std::int32_t patches = 0;
-    for (const std::int32_t p : patch_of_point) patches = std::max(patches, p + 1);
-    const auto members = points_by_label(patch_of_point, static_cast<std::size_t>(patches));
+    for (const std::int32_t p : labels.patch) patches = std::max(patches, p + 1);
+    const auto members = places_by_label(labels.patch, static_cast<std::size_t>(patches));
     // Patch by patch: there are many fewer means to sort than points.
     std::vector<std::vector<SeenMean>> of_patch(static_cast<std::size_t>(patches));
     threads.run(of_patch.size(), 4, [&](std::uint64_t from, std::uint64_t to) {
@@ -81,14 +76,14 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
         for (std::uint64_t patch = from; patch < to; ++patch) {
             places.clear();
             for (const std::uint32_t n : members[patch]) {
-                if (primitive_of_point[n] < 0) continue;
-                const Eigen::Vector3d p = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
+                if (labels.primitive[n] < 0) continue;
+                const Eigen::Vector3d p = points[n];
                 const auto cell = [&](double v) {
                     return static_cast<std::int32_t>(
                         std::clamp(std::floor(v / voxel_m), -2e9, 2e9));
                 };
                 places.push_back({in_order(cell(p.x()), cell(p.y())),
-                                  in_order(cell(p.z()), primitive_of_point[n]),
+                                  in_order(cell(p.z()), labels.primitive[n]),
                                   static_cast<float>(p.x()), static_cast<float>(p.y()),
                                   static_cast<float>(p.z())});
             }
@@ -96,9 +91,8 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
             add_means(places, static_cast<std::int32_t>(patch), of_patch[patch]);
         }
     });
-    std::vector<SeenMean> means;
-    for (const auto& some : of_patch) means.insert(means.end(), some.begin(), some.end());
-    std::ranges::sort(means, std::less<>());
+    std::vector<SeenMean> means = joined(of_patch);
+    std::ranges::sort(means, {}, &SeenMean::order);
     SeenCells out;
     for (auto* values : {&out.i, &out.j, &out.k, &out.primitive, &out.patch})
         values->reserve(means.size());

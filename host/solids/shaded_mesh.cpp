@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "core/rows.h"
 #include "core/vectors.h"
-#include "solids/rows.h"
 
 namespace topple::solids {
 namespace {

@@ -13,11 +13,8 @@ Unseen unseen_of(const SolidParts& parts) {
 SolidParts solid_parts(const Surfaces& geometry, const Volume& voxels) {
     SolidParts out;
     out.frame = geometry.frame;
-    for (std::size_t p = 0; p < voxels.number.size(); ++p) {
-        if (voxels.number[p] < 0) continue;
-        out.model.push_back(geometry.primitives.model[p]);
-        out.shell_log_odds.push_back(geometry.shell_log_odds[p]);
-    }
+    out.model = left_of(voxels.number, geometry.primitives.model);
+    out.shell_log_odds = left_of(voxels.number, geometry.shell_log_odds);
     out.samples = numbered(geometry.samples, voxels.number);
     out.points.resize(out.model.size());
     for (const std::int32_t p : numbered(geometry.primitive_of_point, voxels.number)) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <stop_token>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -32,27 +31,20 @@ SpaceCarving::SpaceCarving(device::Device& device, const Observation& input,
     if (beside) begin();
 }
 
-SpaceCarving::~SpaceCarving() = default;
+SpaceCarving::~SpaceCarving() {
+    stop_.request_stop();
+}
 
 void SpaceCarving::begin() {
-    std::promise<void> done;
-    std::future<void> result = done.get_future();
     try {
-        beside_ = std::jthread(
-            [this](const std::stop_token& stop, std::promise<void> promise) {
-                const ThreadPool::Beside one_more(device_.threads());
-                try {
-                    scene_ = std::make_shared<vdb::VoxelScene>(frame_, input_.cloud);
-                    from_around_ = carve(*scene_, [&](double) {
-                        if (stop.stop_requested()) throw Stopped{};
-                    });
-                    promise.set_value();
-                } catch (...) {
-                    promise.set_exception(std::current_exception());
-                }
-            },
-            std::move(done));
-        done_ = std::move(result);
+        beside_ = std::async(std::launch::async, [this] {
+            const ThreadPool::Beside one_more(device_.threads());
+            Carved out{std::make_shared<vdb::VoxelScene>(frame_, input_.cloud)};
+            out.from_around = carve(*out.scene, [this](double) {
+                if (stop_.stop_requested()) throw Stopped{};
+            });
+            return out;
+        });
     } catch (const std::system_error&) {
         // The system has no more threads: finish() does it all.
     }
@@ -83,16 +75,16 @@ bool SpaceCarving::carve(vdb::VoxelScene& scene,
 }
 
 SpaceCarving::Carved SpaceCarving::take_carved(std::span<const std::int32_t> primitive_of_point) {
-    while (done_.wait_for(between_looks) == std::future_status::timeout) device_.threads().poll();
-    done_.get();
-    scene_->set_labels(input_.cloud, primitive_of_point);
-    return {std::move(scene_), from_around_};
+    while (beside_.wait_for(between_looks) == std::future_status::timeout) device_.threads().poll();
+    Carved out = beside_.get();
+    out.scene->set_labels(input_.cloud, primitive_of_point);
+    return out;
 }
 
 SpaceCarving::Carved SpaceCarving::finish(std::span<const std::int32_t> primitive_of_point,
                                           const geometry::GapPoints& gaps, StageClock& stage) {
     Carved out;
-    const bool beside = done_.valid();
+    const bool beside = beside_.valid();
     if (!beside) {
         out.scene = stage("voxels", [&] {
             if (gaps.size() == 0)

@@ -6,7 +6,7 @@
 #include <future>
 #include <memory>
 #include <span>
-#include <thread>
+#include <stop_token>
 
 #include "device/device.h"
 #include "device/stage_clock.h"
@@ -53,11 +53,8 @@ class SpaceCarving {
     device::Device& device_;
     const Observation& input_;
     vdb::VoxelFrame frame_;
-    // What the other thread has found, once `done_` is set.
-    std::shared_ptr<vdb::VoxelScene> scene_;
-    bool from_around_ = false;
-    std::future<void> done_;  // not valid: nothing goes on beside
-    std::jthread beside_;
+    std::stop_source stop_;
+    std::future<Carved> beside_;  // not valid: nothing goes on beside
 };
 
 }  // namespace topple

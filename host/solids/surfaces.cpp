@@ -89,8 +89,7 @@ geometry::SurfaceSeams surface_seams(const Surfaces& g, std::span<const std::int
     for (std::size_t n = 0; n < s.size(); ++n) {
         const std::int32_t a = solid(n);
         if (a < 0 || (counts && !counts(n))) continue;
-        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
-            const std::uint32_t m = s.neighbours[k];
+        for (const std::uint32_t m : s.around(n)) {
             const std::int32_t b = solid(m);
             if (m <= n || b < 0) continue;
             geometry::Seam& seam =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -16,7 +15,7 @@ struct TakenAway {
     std::vector<std::int32_t> number;          // of each primitive, in their order; -1: taken away
     std::shared_ptr<const SolidScene> solids;  // without them
     struct Voxel {
-        std::array<std::int32_t, 3> at;
+        Place at;
         std::int32_t primitive;  // whose it is now, by its new number; -1: it is empty
     };
     std::vector<Voxel> changed;  // sorted

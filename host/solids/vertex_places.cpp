@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rows.h"
+#include "core/sort_unique.h"
 #include "core/vectors.h"
 #include "solids/meeting_point.h"
-#include "solids/rows.h"
-#include "solids/sort_unique.h"
 
 namespace topple::solids {
 namespace {

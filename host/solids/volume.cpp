@@ -5,7 +5,6 @@
 #include <array>
 #include <limits>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "core/ranked.h"
@@ -16,6 +15,7 @@
 #include "geometry/surface_gaps.h"
 #include "solids/boundary.h"
 #include "solids/patches.h"
+#include "solids/solid_places.h"
 #include "vdb/completion.h"
 
 namespace topple {
@@ -48,15 +48,6 @@ std::int32_t floor_level(const SolidCells& cells, const Surfaces& geometry) {
     return upper_median(k);
 }
 
-std::vector<vdb::StandsOn> ledges(const Surfaces& geometry) {
-    const Vec3& up = geometry.frame.axes[2];
-    std::vector<vdb::StandsOn> out;
-    for (const geometry::Ledge& l :
-         geometry::ledges_between(geometry.surfels, geometry.primitives, {up[0], up[1], up[2]}))
-        out.push_back({l.above, l.below, l.height_m});
-    return out;
-}
-
 // The faces of the primitives: what bounds the solids within their voxels.
 struct Faces {
     std::vector<SurfacePatch> patches;
@@ -66,44 +57,40 @@ struct Faces {
 
 // Where patches were seen, and what lies between: gaps of sparse scans.
 solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPoints& gaps,
-                                   std::vector<std::int32_t> solid, std::vector<std::int32_t> face,
+                                   solids::PointLabels labels,
                                    const std::vector<std::int32_t>& number,
                                    const std::array<Vec3, 3>& axes, double voxel_m,
                                    ThreadPool& threads) {
-    if (gaps.size() == 0) return solids::seen_cells(cloud, solid, face, axes, voxel_m, threads);
+    if (gaps.size() == 0) return solids::seen_cells({cloud, axes}, labels, voxel_m, threads);
     std::int32_t faces = 0;
-    for (const std::int32_t f : face) faces = std::max(faces, f + 1);
+    for (const std::int32_t f : labels.patch) faces = std::max(faces, f + 1);
     std::vector<bool> left(static_cast<std::size_t>(faces), false);
-    for (const std::int32_t f : face)
+    for (const std::int32_t f : labels.patch)
         if (f >= 0) left[f] = true;
     const PointCloud all = geometry::with_gaps(cloud, gaps);
     for (std::size_t n = 0; n < gaps.size(); ++n) {
         const std::int32_t f = gaps.face[n];
-        solid.push_back(number[gaps.primitive[n]]);
-        face.push_back(f >= 0 && f < faces && left[f] ? f : -1);
+        labels.primitive.push_back(number[gaps.primitive[n]]);
+        labels.patch.push_back(f >= 0 && f < faces && left[f] ? f : -1);
     }
-    return solids::seen_cells(all, solid, face, axes, voxel_m, threads);
+    return solids::seen_cells({all, axes}, labels, voxel_m, threads);
 }
 
 Faces find_faces(device::Device& device, const Observation& input, const Surfaces& geometry,
                  const geometry::GapPoints& gaps, const std::vector<std::int32_t>& number,
                  double voxel_m, std::span<const Role> roles) {
     const geometry::Regions& faces = geometry.primitives.faces;
-    std::vector<std::int32_t> face_of_point;
-    face_of_point.reserve(input.cloud.size());
-    for (const std::uint32_t s : geometry.surfels.of_point) face_of_point.push_back(faces.label[s]);
+    const solids::GridPoints points(input.cloud, geometry.frame.axes);
+    const double cell_m = 2 * geometry.surfels.cell_m;
+    solids::PointLabels labels{numbered(geometry.primitive_of_point, number), {}};
+    labels.patch.reserve(points.size());
+    for (const std::uint32_t s : geometry.surfels.of_point) labels.patch.push_back(faces.label[s]);
     Faces out;
-    out.patches = solids::fit_patches(input.cloud, faces.regions, face_of_point,
-                                      geometry.frame.axes, device.threads());
-    std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
-    solids::drop_explained(input.cloud, out.patches, geometry.frame.axes,
-                           2 * geometry.surfels.cell_m, solid_of_point, face_of_point,
-                           device.threads());
-    solids::add_narrow_faces(input.cloud, geometry.frame.axes, 2 * geometry.surfels.cell_m,
-                             out.patches, solid_of_point, face_of_point, device.threads());
-    out.seen =
-        seen_and_between(input.cloud, gaps, std::move(solid_of_point), std::move(face_of_point),
-                         number, geometry.frame.axes, voxel_m, device.threads());
+    out.patches = solids::fit_patches(points, faces.regions, labels.patch, device.threads());
+    solids::drop_explained(points, out.patches, cell_m, labels, device.threads());
+    solids::add_narrow_faces(points, cell_m, out.patches, labels, device.threads());
+    out.seen = seen_and_between(input.cloud, gaps, std::move(labels), number, geometry.frame.axes,
+                                voxel_m, device.threads());
     out.sheet = solids::one_sided(out.seen, out.patches, roles.size());
     for (std::size_t p = 0; p < roles.size(); ++p)
         out.sheet[p] = out.sheet[p] && in_shell(roles[p]);
@@ -142,18 +129,18 @@ std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view,
         const std::int32_t p = cells.primitive[n];
         if (p < 0 || sheet[p]) continue;
         out[n] = static_cast<std::uint8_t>(
-            view.unseen_run({cells.i[n], cells.j[n], cells.k[n] - 1}, 2, -1, 255));
+            view.unseen_run(moved(place_of(cells, n), 2, -1), 2, -1, 255));
     }
     return out;
 }
 
-// Heights at which one primitive is known to stand on another.
-std::vector<solids::KnownRest> known_rests(const Surfaces& geometry,
-                                           const std::vector<std::int32_t>& number) {
-    std::vector<solids::KnownRest> out;
-    for (const vdb::StandsOn& on : ledges(geometry)) {
-        const std::int32_t above = number[on.above], below = number[on.below];
-        if (above >= 0 && below >= 0) out.push_back({above, below, on.height_m});
+// Of ledges those between solids.
+std::vector<Ledge> between_solids(std::span<const Ledge> ledges,
+                                  const std::vector<std::int32_t>& number) {
+    std::vector<Ledge> out;
+    for (const Ledge& l : ledges) {
+        const std::int32_t above = number[l.above], below = number[l.below];
+        if (above >= 0 && below >= 0) out.push_back({above, below, l.height_m});
     }
     return out;
 }
@@ -168,11 +155,7 @@ Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
         SolidCells& to = in_bounds ? out.near : out.strays;
-        to.i.push_back(cells.i[n]);
-        to.j.push_back(cells.j[n]);
-        to.k.push_back(cells.k[n]);
-        to.primitive.push_back(cells.primitive[n]);
-        to.basis.push_back(cells.basis[n]);
+        to.add(place_of(cells, n), cells.primitive[n], cells.basis[n]);
         to.unseen_below.push_back(cells.unseen_below[n]);
     }
     return out;
@@ -181,28 +164,23 @@ Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
 std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Observation& input,
                                               const Surfaces& geometry,
                                               const geometry::GapPoints& gaps,
-                                              const std::vector<std::int32_t>& number,
-                                              const vdb::VoxelScene& volume, SolidCells cells,
-                                              std::vector<Role> roles) {
-    Faces faces = find_faces(device, input, geometry, gaps, number, cells.voxel_m, roles);
-    cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), faces.sheet);
-    Parted parted = part_strays(cells, volume);
-    BoundaryCells boundary =
-        solids::find_boundary(device, parted.near, faces.seen, std::move(faces.patches),
-                              faces.sheet, known_rests(geometry, number));
+                                              std::span<const Ledge> ledges, const Volume& volume,
+                                              SolidCells cells, SolidDetail detail) {
+    const bool within_voxels = detail == SolidDetail::within_voxels;
+    std::vector<Role> roles = left_of(volume.number, geometry.role);
+    Faces faces;
+    if (within_voxels)
+        faces = find_faces(device, input, geometry, gaps, volume.number, cells.voxel_m, roles);
+    else
+        faces.sheet = find_sheets(geometry, volume.number, roles);
+    cells.unseen_below = unseen_below(vdb::VolumeView(*volume.scene, cells, roles), faces.sheet);
+    Parted parted = part_strays(cells, *volume.scene);
+    BoundaryCells boundary;
+    if (within_voxels)
+        boundary = solids::find_boundary(device, parted.near, faces.seen, std::move(faces.patches),
+                                         faces.sheet, between_solids(ledges, volume.number));
     return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
                                               std::move(parted.strays), std::move(boundary));
-}
-
-std::shared_ptr<const SolidScene> scene_of_whole_voxels(const Surfaces& geometry,
-                                                        const std::vector<std::int32_t>& number,
-                                                        const vdb::VoxelScene& volume,
-                                                        SolidCells cells, std::vector<Role> roles) {
-    cells.unseen_below =
-        unseen_below(vdb::VolumeView(volume, cells, roles), find_sheets(geometry, number, roles));
-    Parted parted = part_strays(cells, volume);
-    return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
-                                              std::move(parted.strays));
 }
 
 constexpr const char* fraction_field = "fraction";
@@ -215,33 +193,22 @@ void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume) {
     const BoundaryCells& b = solids.boundary();
     std::vector<std::int32_t> i, j, k;
     std::vector<float> fraction;
-    const auto add = [&](const std::tuple<std::int32_t, std::int32_t, std::int32_t>& at,
-                         std::uint32_t share) {
-        i.push_back(std::get<0>(at));
-        j.push_back(std::get<1>(at));
-        k.push_back(std::get<2>(at));
-        fraction.push_back(static_cast<float>(std::min(share, BoundaryCells::whole)) /
-                           static_cast<float>(BoundaryCells::whole));
-    };
-    std::size_t n = 0, m = 0;
-    while (n < cells.size() || m < b.size()) {
-        const auto cell = [&] { return std::tuple(cells.i[n], cells.j[n], cells.k[n]); };
-        const auto part = [&] { return std::tuple(b.i[m], b.j[m], b.k[m]); };
-        const auto at = n == cells.size() ? part()
-                        : m == b.size()   ? cell()
-                                          : std::min(cell(), part());
-        // A cell of which the boundary says nothing is solid as a whole.
-        const std::int32_t own =
-            n < cells.size() && cell() == at ? cells.primitive[n] : std::int32_t{-2};
-        bool whole = own != -2;
-        std::uint32_t share = 0;
-        for (; m < b.size() && part() == at; ++m) {
-            share += b.share[m];
-            whole = whole && b.primitive[m] != own;
-        }
-        add(at, whole ? BoundaryCells::whole : share);
-        n += own != -2;
-    }
+    solids::each_solid_place(
+        cells, b, [&](const Place& at, std::size_t n, std::size_t first, std::size_t last) {
+            // A cell of which the boundary says nothing is solid as a whole.
+            bool whole = n != solids::no_cell;
+            std::uint32_t share = 0;
+            for (std::size_t m = first; m < last; ++m) {
+                share += b.share[m];
+                whole = whole && b.primitive[m] != cells.primitive[n];
+            }
+            if (whole) share = BoundaryCells::whole;
+            i.push_back(at[0]);
+            j.push_back(at[1]);
+            k.push_back(at[2]);
+            fraction.push_back(static_cast<float>(std::min(share, BoundaryCells::whole)) /
+                               static_cast<float>(BoundaryCells::whole));
+        });
     volume.add_field(fraction_field, i, j, k, fraction);
 }
 
@@ -251,7 +218,7 @@ void clear_lost_labels(const SolidScene& before, const SolidScene& now, vdb::Vox
     std::vector<vdb::Claim> claims;
     for (std::size_t n = 0; n < cells.size(); ++n)
         if (to.primitive[n] != cells.primitive[n])
-            claims.push_back({{to.i[n], to.j[n], to.k[n]}, to.primitive[n], to.basis[n]});
+            claims.push_back({place_of(to, n), to.primitive[n], to.basis[n]});
     vdb::commit(claims, scene, cells);
 }
 
@@ -303,23 +270,16 @@ Volume fill_volume(device::Device& device, const Observation& input, const Surfa
         options.fill.columns = carved.from_around;
         options.fill.lowest = floor_level(cells, geometry);
         options.fill.roles = geometry.role;
-        options.ledges = ledges(geometry);
+        options.ledges =
+            geometry::ledges_between(geometry.surfels, geometry.primitives, geometry.frame.axes[2]);
         options.map = input.space ? &*input.space : nullptr;
         vdb::complete(device, options, *out.scene, cells);
         out.number = solid_numbers(cells, geometry.role.size());
         out.scene->relabel(out.number);
         cells.primitive = numbered(cells.primitive, out.number);
-        std::vector<Role> roles;
-        for (std::size_t p = 0; p < geometry.role.size(); ++p)
-            if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
-        if (detail == SolidDetail::whole_voxels) {
-            out.solids = scene_of_whole_voxels(geometry, out.number, *out.scene, std::move(cells),
-                                               std::move(roles));
-            return;
-        }
-        out.solids = solid_scene(device, input, geometry, gaps, out.number, *out.scene,
-                                 std::move(cells), std::move(roles));
-        store_fractions(*out.solids, *out.scene);
+        out.solids = solid_scene(device, input, geometry, gaps, options.ledges, out,
+                                 std::move(cells), detail);
+        if (detail == SolidDetail::within_voxels) store_fractions(*out.solids, *out.scene);
     });
     return out;
 }

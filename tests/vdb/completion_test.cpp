@@ -56,7 +56,7 @@ std::vector<Voxel> voxels_of(const VoxelScene& scene, std::int32_t primitive) {
     const SolidCells cells = scene.solid_cells();
     std::vector<Voxel> out;
     for (std::size_t n = 0; n < cells.size(); ++n)
-        if (cells.primitive[n] == primitive) out.push_back({cells.i[n], cells.j[n], cells.k[n]});
+        if (cells.primitive[n] == primitive) out.push_back(place_of(cells, n));
     return out;
 }
 
@@ -105,7 +105,7 @@ TEST(Completion, ABookEndsAtTheLedgeAboveTheNext) {
     VoxelScene scene = filled(boxes);
     const std::size_t before = completed_below(scene, 1, 0.11);
     ASSERT_GT(completed_below(scene, 2, 0.11), 100u);
-    const StandsOn on{.above = 2, .below = 1, .height_m = 0.1};
+    const Ledge on{.above = 2, .below = 1, .height_m = 0.1};
     EXPECT_GT(apply(scene, walls,
                     [&](const VolumeView& v) {
                         return support_claims(v, {&on, 1});

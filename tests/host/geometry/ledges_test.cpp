@@ -126,7 +126,7 @@ TEST(Ledges, MergingPartsAStack) {
         EXPECT_GT(most.share, 0.7) << "body " << body;
     }
     EXPECT_EQ(std::set(label.begin(), label.end()).size(), 4u);
-    const std::vector<Ledge> ledges = ledges_between(surfels, primitives, Vector3d::UnitZ());
+    const std::vector<Ledge> ledges = ledges_between(surfels, primitives, {0, 0, 1});
     ASSERT_EQ(ledges.size(), 2u);
     for (const Ledge& l : ledges) {
         const bool upper = l.above == label[3];

@@ -14,11 +14,16 @@ using Eigen::Vector3d;
 using scenes::Builder;
 using scenes::majority;
 
+Regions split_up(const Surfels& surfels) {
+    ThreadPool threads(2);
+    return split(surfels, threads);
+}
+
 TEST(Split, NothingGivesNothing) {
     Surfels none;
     none.cell_m = 0.02;
     none.neighbour_first = {0};
-    const Regions regions = split(none);
+    const Regions regions = split_up(none);
     EXPECT_TRUE(regions.label.empty());
     EXPECT_TRUE(regions.regions.empty());
 }
@@ -26,7 +31,7 @@ TEST(Split, NothingGivesNothing) {
 TEST(Split, OnePointHasNoRegion) {
     Builder scene;
     scene.point({1, 2, 3}, {0, 0, 1}, 0);
-    const Regions regions = split(scene.surfels());
+    const Regions regions = split_up(scene.surfels());
     ASSERT_EQ(regions.label.size(), 1u);
     EXPECT_EQ(regions.label[0], -1);
 }
@@ -59,7 +64,7 @@ TEST(Split, CleanPlaneIsOneRegion) {
     Builder scene;
     scene.face({0, 0, 0.503}, {1, 0, 0}, {0, 1, 0}, 0);
     const Surfels s = scene.surfels();
-    const Regions regions = split(s);
+    const Regions regions = split_up(s);
     ASSERT_EQ(regions.regions.size(), 1u);
     EXPECT_EQ(regions.regions[0].model.degree, 1);
     EXPECT_EQ(regions.regions[0].surfels, s.size());
@@ -72,7 +77,7 @@ TEST(Split, ThickWallIsOneRegion) {
     scene.noise_m = 0.012;
     scene.face({0.01, 0, 0}, {0, 2, 0}, {0, 0, 2}, 0);
     const Surfels s = scene.surfels();
-    const Regions regions = split(s);
+    const Regions regions = split_up(s);
     EXPECT_GT(majority(scene, s, regions.label, 0).share, 0.98);
     EXPECT_EQ(regions.regions[majority(scene, s, regions.label, 0).label].model.degree, 1);
 }
@@ -85,7 +90,7 @@ TEST(Split, CurvedSurfacesStayInOnePiece) {
     scene.tube({1, 0, 0}, 0.04, 0.25, false, 1);
     scene.tube({2, 0, 0}, 0.11, 0.15, false, 2);
     const Surfels s = scene.surfels();
-    const Regions regions = split(s);
+    const Regions regions = split_up(s);
     for (int body = 0; body < 3; ++body) {
         const auto most = majority(scene, s, regions.label, body);
         EXPECT_GT(most.share, 0.95) << "body " << body;
@@ -100,7 +105,7 @@ TEST(Split, FacesOfABoxAreSeparatePlanes) {
     scene.face({0, 0, 0}, x, z, 1);
     scene.face(x, y, z, 2);
     const Surfels s = scene.surfels();
-    const Regions regions = split(s);
+    const Regions regions = split_up(s);
     std::set<std::int32_t> ids;
     for (int face = 0; face < 3; ++face) {
         const auto most = majority(scene, s, regions.label, face);
@@ -118,14 +123,14 @@ TEST(Split, LabelsAreWithinRangeAndCountsAgree) {
     scene.box({0, 0, 0}, {0.2, 0.2, 0.2}, 1);
     scene.ball({-0.5, -0.5, 0.1}, 0.1, 2);
     const Surfels s = scene.surfels();
-    const Regions regions = split(s);
+    const Regions regions = split_up(s);
     std::vector<std::uint64_t> count(regions.regions.size(), 0);
     for (const std::int32_t label : regions.label) {
         ASSERT_LT(label, static_cast<std::int32_t>(count.size()));
         if (label >= 0) ++count[label];
     }
     for (std::size_t k = 0; k < count.size(); ++k) EXPECT_EQ(count[k], regions.regions[k].surfels);
-    EXPECT_EQ(split(s).label, regions.label);
+    EXPECT_EQ(split_up(s).label, regions.label);
 }
 
 std::vector<bool> minimum_cut(std::span<const CutNode> nodes, std::span<const CutEdge> edges) {

@@ -82,6 +82,20 @@ TEST(SingleScan, IsNotTakenFromAFloorWithinABox) {
     EXPECT_FALSE(find_single_scan(cloud, {0, 0, 0}, 0.02));
 }
 
+// Points at random on the part of the plane across an axis that lies between two corners.
+void scatter(PointCloud& cloud, test::Random& random, double per_m2, std::size_t axis, double at,
+             const Vec3& low, const Vec3& high) {
+    const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const double area = (high[a] - low[a]) * (high[b] - low[b]);
+    for (int n = 0; n < static_cast<int>(area * per_m2); ++n) {
+        Vec3 p{};
+        p[a] = low[a] + random.uniform() * (high[a] - low[a]);
+        p[b] = low[b] + random.uniform() * (high[b] - low[b]);
+        p[axis] = at;
+        add(cloud, p);
+    }
+}
+
 class Views : public ::testing::Test {
   protected:
     // A closed box on a bare floor of 4 x 4 m, the floor also beneath it.
@@ -111,29 +125,16 @@ class Views : public ::testing::Test {
     }
     void add_room(PointCloud& cloud, bool with_box) {
         test::Random random(1);
-        const auto face = [&](Vec3 low, const Vec3& high, std::size_t axis, double at) {
-            const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
-            const double area = (high[a] - low[a]) * (high[b] - low[b]);
-            for (int n = 0; n < static_cast<int>(area * 4000); ++n) {
-                Vec3 p{};
-                p[a] = low[a] + random.uniform() * (high[a] - low[a]);
-                p[b] = low[b] + random.uniform() * (high[b] - low[b]);
-                p[axis] = at;
-                add(cloud, p);
-            }
+        const auto face = [&](const Vec3& low, const Vec3& high, std::size_t axis, double at) {
+            scatter(cloud, random, 4000, axis, at, low, high);
         };
         const Vec3 size{4, 3, 2.5};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            face({0, 0, 0}, size, axis, 0);
-            face({0, 0, 0}, size, axis, size[axis]);
-        }
-        if (with_box) {
-            face(box_low, box_high, 2, box_high[2]);
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                face(box_low, box_high, axis, box_low[axis]);
-                if (axis == 0) face(box_low, box_high, axis, box_high[axis]);
-            }
-        }
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (const double at : {0.0, size[axis]}) face({0, 0, 0}, size, axis, at);
+        if (!with_box) return;
+        face(box_low, box_high, 2, box_high[2]);
+        for (const double at : {box_low[0], box_high[0]}) face(box_low, box_high, 0, at);
+        face(box_low, box_high, 1, box_low[1]);
     }
     static constexpr Vec3 box_low{1.5, 2.1, 0}, box_high{2.5, 3, 0.8};
     std::unique_ptr<device::Device> device = device::open_native();
@@ -210,15 +211,7 @@ TEST_F(Views, GapsDoNotTurnTheFacesOfABox) {
     PointCloud cloud;
     const Vec3 low{-0.15, -0.15, 0}, high{0.15, 0.15, 0.5};
     const auto face = [&](std::size_t axis, double at, const Vec3& from, const Vec3& to) {
-        const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
-        const double area = (to[a] - from[a]) * (to[b] - from[b]);
-        for (int n = 0; n < static_cast<int>(area / (0.02 * 0.02)); ++n) {
-            Vec3 p{};
-            p[a] = from[a] + random.uniform() * (to[a] - from[a]);
-            p[b] = from[b] + random.uniform() * (to[b] - from[b]);
-            p[axis] = at;
-            add(cloud, p);
-        }
+        scatter(cloud, random, 1 / (0.02 * 0.02), axis, at, from, to);
     };
     face(2, 0, {-1.5, -1.5, 0}, {1.5, 1.5, 0});
     face(2, high[2], low, high);
@@ -320,9 +313,7 @@ TEST_F(Views, WhatIsSeenFromBehindEndsNoRay) {
     for (int i = 0; i < 100; ++i) {
         for (int j = 0; j < 100; ++j) {
             add(cloud, {i * 0.02, j * 0.02, 0});
-            cloud.nx.push_back(0);
-            cloud.ny.push_back(0);
-            cloud.nz.push_back(1);
+            test::add_normal(cloud, Vec3{0, 0, 1});
         }
     }
     const Surfels s = make_surfels(*device, cloud, 0.05, {}, {});
@@ -337,16 +328,16 @@ TEST_F(Views, WhatIsSeenFromBehindEndsNoRay) {
 using Eigen::Vector3d;
 using scenes::Builder;
 
-PointCloud cloud_of(const Builder& scene) {
-    const PointCloud cloud = test::cloud_of(scene.points);
-    return cloud;
+FreeSpace seen_from(std::span<const Vec3> eyes, const Builder& scene,
+                    std::span<const std::uint32_t> eye_of_point = {}) {
+    ThreadPool threads(2);
+    return {scene.surfels(), test::cloud_of(scene.points), eyes, eye_of_point, threads};
 }
 
 TEST(FreeSpace, WithoutViewpointsNothingIsKnown) {
     Builder scene;
     scene.face({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    ThreadPool threads(2);
-    const FreeSpace free(scene.surfels(), cloud_of(scene), {}, {}, threads);
+    const FreeSpace free = seen_from({}, scene);
     EXPECT_FALSE(free.known());
     EXPECT_FALSE(free.at({0.5, 0.5, 0.5}));
     EXPECT_FALSE(FreeSpace().between({0, 0, 1}, {1, 1, 1}));
@@ -358,8 +349,7 @@ TEST(FreeSpace, ReachesFromTheSensorToTheSurfaceAndNoFurther) {
     scene.box({-0.2, -0.2, 0.0}, {0.4, 0.4, 0.6}, 1);
     scene.face({1, -1, 0}, {0, 0, 1.5}, {0, 2, 0}, 2);
     const Vec3 eye{0, 0, 2};
-    ThreadPool threads(2);
-    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
+    const FreeSpace free = seen_from({&eye, 1}, scene);
     EXPECT_TRUE(free.known());
     EXPECT_TRUE(free.at({0, 0, 0.9}));
     EXPECT_TRUE(free.at({0.7, 0, 0.3}));
@@ -377,8 +367,7 @@ TEST(FreeSpace, LinesThroughASurfaceTellNothing) {
     scene.face({-0.6, -0.6, 1}, {1.2, 0, 0}, {0, 1.2, 0}, 1);
     scene.face({0.7, -1, 0}, {0, 0, 1.8}, {0, 2, 0}, 2);
     const Vec3 eye{0, 0, 2};
-    ThreadPool threads(2);
-    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
+    const FreeSpace free = seen_from({&eye, 1}, scene);
     EXPECT_TRUE(free.at({0, 0, 1.4}));
     EXPECT_FALSE(free.at({0, 0, 0.5}));
 }
@@ -388,10 +377,9 @@ TEST(FreeSpace, AStrayFarAwayDoesNotCoarsenIt) {
     scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
     scene.face({1, -1, 0}, {0, 0, 1.5}, {0, 2, 0}, 1);
     const Vec3 eye{0, 0, 2};
-    ThreadPool threads(2);
-    const FreeSpace before(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
+    const FreeSpace before = seen_from({&eye, 1}, scene);
     for (const double side : {-1, 1}) scene.point({side * 6000, 7000, side * 5000}, {0, 0, 1}, 2);
-    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
+    const FreeSpace free = seen_from({&eye, 1}, scene);
     EXPECT_EQ(free.cell_m(), before.cell_m());
     EXPECT_TRUE(free.at({0, 0, 0.9}));
     EXPECT_FALSE(free.at({0, 0, 0}));
@@ -401,14 +389,13 @@ TEST(FreeSpace, TheOrderOfPointsAndTheirViewpointsDoesNotMatter) {
     Builder scene;
     scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
     const std::vector<Vec3> eyes{{0, 0, 2}, {0.5, 0, 1}};
-    std::vector<std::uint32_t> seen_from;
+    std::vector<std::uint32_t> eye_of_point;
     for (std::size_t i = 0; i < scene.points.size(); ++i)
-        seen_from.push_back(static_cast<std::uint32_t>(i % 2));
-    ThreadPool threads(2);
-    const FreeSpace free(scene.surfels(), cloud_of(scene), eyes, seen_from, threads);
+        eye_of_point.push_back(static_cast<std::uint32_t>(i % 2));
+    const FreeSpace free = seen_from(eyes, scene, eye_of_point);
     std::reverse(scene.points.begin(), scene.points.end());
-    std::reverse(seen_from.begin(), seen_from.end());
-    const FreeSpace turned(scene.surfels(), cloud_of(scene), eyes, seen_from, threads);
+    std::reverse(eye_of_point.begin(), eye_of_point.end());
+    const FreeSpace turned = seen_from(eyes, scene, eye_of_point);
     for (double x = -1; x < 1; x += 0.07)
         for (double z = 0; z < 2; z += 0.07)
             EXPECT_EQ(free.at({x, 0.01, z}), turned.at({x, 0.01, z})) << x << ' ' << z;

@@ -79,7 +79,6 @@ TEST(Boundary, AWallThinnerThanAVoxelIsAsThickAsItsTwoSidesSay) {
     }
 }
 
-// Nobody saw where the upper one's underside is, nor the lower one's top under it.
 // A cup of three primitives: its outside, its inside, and the bottom within it. Its voxels are as
 // wide as what its wall bends around.
 TEST(Boundary, ACupIsItsWallAndItsBottom) {
@@ -130,13 +129,7 @@ TEST(Boundary, ACupIsItsWallAndItsBottom) {
             cells.try_emplace(
                 {index(s.cloud.x[n]), index(s.cloud.y[n]), index(s.cloud.z[n] - 1e-6)},
                 s.primitive[n]);
-        for (const auto& [at, primitive] : cells) {
-            s.cells.i.push_back(at[0]);
-            s.cells.j.push_back(at[1]);
-            s.cells.k.push_back(at[2]);
-            s.cells.primitive.push_back(primitive);
-            s.cells.basis.push_back(Basis::surface);
-        }
+        for (const auto& [at, primitive] : cells) s.cells.add(at, primitive, Basis::surface);
         const auto device = device::open_native();
         const BoundaryCells boundary =
             find_boundary(*device, s.cells, s.seen(), s.patches, std::vector<bool>(4, false));
@@ -153,6 +146,7 @@ TEST(Boundary, ACupIsItsWallAndItsBottom) {
     }
 }
 
+// Nobody saw where the upper one's underside is, nor the lower one's top under it.
 TEST(Boundary, WhatStandsOnAnotherEndsWhereThatBegins) {
     for (const double height : {0.100, 0.1049, 0.11, 0.1163}) {
         SCOPED_TRACE(height);

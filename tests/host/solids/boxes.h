@@ -41,8 +41,8 @@ struct Scanned {
 
     SeenCells seen() const {
         ThreadPool threads(2);
-        return seen_cells(cloud, primitive, patch, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}},
-                          cells.voxel_m, threads);
+        return seen_cells({cloud, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}},
+                          {primitive, patch}, cells.voxel_m, threads);
     }
 };
 
@@ -107,13 +107,7 @@ inline Scanned scan(const std::vector<Box>& boxes, double voxel_m, double spacin
         }
     }
     out.cells.voxel_m = voxel_m;
-    for (const auto& [at, what] : cells) {
-        out.cells.i.push_back(at[0]);
-        out.cells.j.push_back(at[1]);
-        out.cells.k.push_back(at[2]);
-        out.cells.primitive.push_back(what.first);
-        out.cells.basis.push_back(what.second);
-    }
+    for (const auto& [at, what] : cells) out.cells.add(at, what.first, what.second);
     return out;
 }
 

@@ -44,7 +44,7 @@ TEST(Patches, LieWhereMostPointsAre) {
         s.add({0.3, between(random, 0, 0.2), 0.5 + between(random, 0, 0.05)});
     ThreadPool threads(2);
     const std::vector<geometry::Region> regions{level_region(0.496)};
-    const SurfacePatch patch = fit_patches(s.cloud, regions, s.label, as_is, threads)[0];
+    const SurfacePatch patch = fit_patches({s.cloud, as_is}, regions, s.label, threads)[0];
     EXPECT_NEAR(patch.distance({0.1, 0.1, 0.5}), 0, 1.5e-4);
     EXPECT_GT(patch.distance({0.1, 0.1, 0.51}), 0.0099) << "it still faces up";
     EXPECT_NEAR(patch.noise_m, 0.001, 2e-4);
@@ -64,8 +64,8 @@ TEST(Patches, AreTheSameInAnyOrder) {
     for (auto p = points.rbegin(); p != points.rend(); ++p) back.add(*p);
     ThreadPool threads(2);
     const std::vector<geometry::Region> regions{level_region(0.001)};
-    const SurfacePatch a = fit_patches(there.cloud, regions, there.label, as_is, threads)[0],
-                       b = fit_patches(back.cloud, regions, back.label, as_is, threads)[0];
+    const SurfacePatch a = fit_patches({there.cloud, as_is}, regions, there.label, threads)[0],
+                       b = fit_patches({back.cloud, as_is}, regions, back.label, threads)[0];
     EXPECT_EQ(a.c, b.c);
     EXPECT_EQ(a.origin, b.origin);
     EXPECT_EQ(a.noise_m, b.noise_m);
@@ -91,7 +91,7 @@ TEST(Patches, OfATubeHaveItsRadius) {
     region.residual_m = 0.001;
     ThreadPool threads(2);
     const SurfacePatch patch =
-        fit_patches(s.cloud, std::vector{region}, s.label, as_is, threads)[0];
+        fit_patches({s.cloud, as_is}, std::vector{region}, s.label, threads)[0];
     for (std::size_t n = 0; n < points.size(); n += 97) {
         const Vec3 p{points[n].x(), points[n].y(), points[n].z()};
         EXPECT_NEAR(patch.distance(p), 0, 3e-5);
@@ -110,7 +110,7 @@ TEST(Patches, OfARowArePlanes) {
     for (const double open : {0.0, 1e16}) {
         region.model.coefficients[5] = open;
         const SurfacePatch patch =
-            fit_patches(s.cloud, std::vector{region}, s.label, as_is, threads)[0];
+            fit_patches({s.cloud, as_is}, std::vector{region}, s.label, threads)[0];
         for (std::size_t n = 4; n < patch.c.size(); ++n) EXPECT_LT(std::abs(patch.c[n]), 1);
         EXPECT_NEAR(patch.distance({1.4, 2, 0.0625}), 0, 1e-5);
     }
@@ -137,12 +137,12 @@ TEST(Patches, OfAnEdgeAreItsSides) {
     edge.c = {0, std::sqrt(0.5), 0, std::sqrt(0.5), 0, 0, 0, 0, 0, 0};
     top.noise_m = side.noise_m = edge.noise_m = 1e-3;
     ThreadPool threads(2);
-    drop_explained(s.cloud, std::vector{top, side, edge}, as_is, 0.04, s.label, patch_of_point,
-                   threads);
-    for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
+    PointLabels labels{s.label, patch_of_point};
+    drop_explained({s.cloud, as_is}, std::vector{top, side, edge}, 0.04, labels, threads);
+    for (std::size_t n = 0; n < s.label.size(); ++n) {
         const bool on_top = std::abs(s.cloud.z[n])<1e-6, on_side = s.cloud.x[n]> 0.2999F;
         if (on_top && on_side) continue;
-        ASSERT_EQ(patch_of_point[n], on_top ? 0 : 1) << s.cloud.x[n] << " " << s.cloud.z[n];
+        ASSERT_EQ(labels.patch[n], on_top ? 0 : 1) << s.cloud.x[n] << " " << s.cloud.z[n];
     }
 }
 
@@ -176,13 +176,14 @@ TEST(NarrowFaces, AreWhatPointsOffTheirPatchesLieIn) {
     std::vector<SurfacePatch> patches{patch({0, 0, 0}, {-1, 0, 0}),
                                       patch({thick, 0, 0}, {1, 0, 0})};
     ThreadPool threads(2);
-    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on, threads);
+    PointLabels labels{s.label, on};
+    add_narrow_faces({s.cloud, as_is}, 0.02, patches, labels, threads);
     ASSERT_EQ(patches.size(), 3u);
     EXPECT_NEAR(patches[2].distance({0.004, 0.1, high}), 0, 1e-4);
     EXPECT_NEAR(patches[2].gradient({0.004, 0.1, high})[2], 1, 1e-2) << "the wall is below";
-    EXPECT_EQ(on[1], 1);
+    EXPECT_EQ(labels.patch[1], 1);
     for (std::size_t n = 0; n < on.size(); ++n)
-        ASSERT_EQ(on[n], n >= sides ? 2 : static_cast<std::int32_t>(n % 2));
+        ASSERT_EQ(labels.patch[n], n >= sides ? 2 : static_cast<std::int32_t>(n % 2));
 }
 
 // Points in the middle of a board are no face: the board goes on to both sides of them.
@@ -204,7 +205,8 @@ TEST(NarrowFaces, HaveTheirPrimitiveBehindThem) {
         on.push_back(0);
     }
     ThreadPool threads(2);
-    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on, threads);
+    PointLabels labels{s.label, on};
+    add_narrow_faces({s.cloud, as_is}, 0.02, patches, labels, threads);
     EXPECT_EQ(patches.size(), 2u);
 }
 
@@ -215,8 +217,8 @@ TEST(SeenCells, HoldCountAndMeanOfEachPatch) {
     s.add({0.011, 0.012, 0.001});
     s.add({0.5, 0.5, 0.5});
     ThreadPool threads(2);
-    const SeenCells cells = seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
-                                       std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02, threads);
+    const SeenCells cells =
+        seen_cells({s.cloud, as_is}, {{4, 4, 4, -1}, {7, 7, 7, 7}}, 0.02, threads);
     ASSERT_EQ(cells.size(), 2u);
     EXPECT_EQ(cells.k[0], -1);
     EXPECT_EQ(cells.count[0], 2);

@@ -132,13 +132,7 @@ Scanned round(const SurfacePatch& quadric, double half_height, double radius, bo
                     cells.insert({i, j, k});
             }
     out.cells.voxel_m = h;
-    for (const auto& at : cells) {
-        out.cells.i.push_back(at[0]);
-        out.cells.j.push_back(at[1]);
-        out.cells.k.push_back(at[2]);
-        out.cells.primitive.push_back(0);
-        out.cells.basis.push_back(Basis::surface);
-    }
+    for (const auto& at : cells) out.cells.add(at, 0, Basis::surface);
     return out;
 }
 
@@ -263,13 +257,7 @@ TEST(SurfaceMesh, a_floor_seen_from_above_has_no_holes) {
 SolidCells cells_of(const std::vector<std::array<std::int32_t, 3>>& places) {
     SolidCells out;
     out.voxel_m = h;
-    for (const auto& at : std::set(places.begin(), places.end())) {
-        out.i.push_back(at[0]);
-        out.j.push_back(at[1]);
-        out.k.push_back(at[2]);
-        out.primitive.push_back(0);
-        out.basis.push_back(Basis::surface);
-    }
+    for (const auto& at : std::set(places.begin(), places.end())) out.add(at, 0, Basis::surface);
     return out;
 }
 

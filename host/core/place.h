@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace topple::solids {
+#include "topple/input.h"
+
+namespace topple {
 
 // Of a voxel, or of a corner of voxels: (i, j, k).
 using Place = std::array<std::int32_t, 3>;
@@ -17,11 +19,22 @@ constexpr Place moved(Place at, std::size_t axis, std::int32_t by) {
     at[axis] += by;
     return at;
 }
+// Itself and those around it, in their order.
+constexpr std::array<Place, 27> around(const Place& at) {
+    std::array<Place, 27> out;
+    for (std::int32_t n = 0; n < 27; ++n)
+        out[n] = {at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1};
+    return out;
+}
+// Of a voxel, in the grid frame.
+constexpr Vec3 middle_of(const Place& at, double voxel_m) {
+    return {(at[0] + 0.5) * voxel_m, (at[1] + 0.5) * voxel_m, (at[2] + 0.5) * voxel_m};
+}
+
 // Of the n-th of what has its places in arrays i, j and k.
 constexpr Place place_of(const auto& all, std::size_t n) {
     return {all.i[n], all.j[n], all.k[n]};
 }
-
 // Of those that are sorted by place, the first one at a place or beyond.
 constexpr std::size_t first_at(const auto& all, const Place& at) {
     std::size_t low = 0, high = all.size();
@@ -33,4 +46,4 @@ constexpr std::size_t first_at(const auto& all, const Place& at) {
     return low;
 }
 
-}  // namespace topple::solids
+}  // namespace topple

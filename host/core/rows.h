@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <span>
 #include <vector>
 
-namespace topple::solids {
+namespace topple {
 
 // What belongs to each of some keys, side by side in one array, in the order in which it came.
 template <class T>
@@ -22,6 +23,7 @@ class Rows {
         std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
         each([&](std::size_t key, const T& item) { item_[next[key]++] = item; });
     }
+    std::size_t size() const { return first_.size() - 1; }
     std::span<const T> operator[](std::size_t key) const {
         return std::span(item_).subspan(first_[key], first_[key + 1] - first_[key]);
     }
@@ -31,4 +33,13 @@ class Rows {
     std::vector<T> item_;
 };
 
-}  // namespace topple::solids
+// The places of each label below `labels`, ascending; -1 is none.
+inline Rows<std::uint32_t> places_by_label(std::span<const std::int32_t> label,
+                                           std::size_t labels) {
+    return {labels, [&](const auto& add) {
+                for (std::uint32_t n = 0; n < label.size(); ++n)
+                    if (label[n] >= 0) add(static_cast<std::size_t>(label[n]), n);
+            }};
+}
+
+}  // namespace topple
