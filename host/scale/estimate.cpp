@@ -46,7 +46,7 @@ constexpr double serial_share = 0.15;
 constexpr double fused_share = 0.66;
 // Cells of a block of a furnished building.
 constexpr std::uint64_t block_cells = 450'000;
-constexpr double work_point_bytes = 16, work_thinned_bytes = 40;
+constexpr double work_point_bytes = 12, work_thinned_bytes = 40;
 // Bytes of all files of an output, its parse.cache among them: of a point of points.ply, of a voxel
 // of the grid as for time, and of every run. In blocks there is no cache.
 constexpr double output_point_bytes = 35, output_voxel_bytes = 63, tiled_output_point_bytes = 23,

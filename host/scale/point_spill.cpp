@@ -50,7 +50,7 @@ void bin_fields(Io& io, Bins& bins, std::uint64_t points) {
 
 SpilledPoints::SpilledPoints(const fs::path& folder)
     : file_(folder / "points.bin"), colour_file_(folder / "colours.bin") {
-    BinaryReader in(folder / "bins.bin");
+    BinaryReader in(folder / bins_name);
     in(points_);
     in(dropped_);
     in(offset_m_, rules::finite);
@@ -60,31 +60,21 @@ SpilledPoints::SpilledPoints(const fs::path& folder)
     if (coloured_ && !PortionReader::holds<Rgb8>(colour_file_, points_)) damaged_file(colour_file_);
 }
 
-void SpilledPoints::read_portions(std::size_t bin, bool with_colours, const Use& use) const {
+void SpilledPoints::read(std::size_t bin, const Use& use) const {
     PortionReader in(file_);
     std::optional<PortionReader> colours_in;
-    if (with_colours) colours_in.emplace(colour_file_);
+    if (coloured_) colours_in.emplace(colour_file_);
     std::vector<Point> points;
     std::vector<Rgb8> colours;
     for (const Portion& portion : bins_[bin].portions) {
         points.resize(portion.points);
         in.read(portion.before, portion.sum, points);
-        if (with_colours) {
+        if (coloured_) {
             colours.resize(portion.points);
             colours_in->read(portion.before, portion.colour_sum, colours);
         }
         use(points, colours);
     }
-}
-
-void SpilledPoints::read(std::size_t bin, const Use& use) const {
-    read_portions(bin, coloured_, use);
-}
-
-void SpilledPoints::read_points(std::size_t bin,
-                                const std::function<void(std::span<const Point>)>& use) const {
-    read_portions(bin, false,
-                  [&](std::span<const Point> points, std::span<const Rgb8>) { use(points); });
 }
 
 PointSpill::PointSpill(const fs::path& folder, std::uint64_t buffer_bytes)
@@ -159,7 +149,7 @@ void PointSpill::finish(const Vec3& offset_m) {
     writer_.finish();
     if (colour_writer_) colour_writer_->finish();
     std::ranges::sort(bins_, {}, [](const Open& bin) { return bin.written.bin; });
-    BinaryWriter out(folder_ / "bins.bin");
+    BinaryWriter out(folder_ / bins_name);
     out(points_);
     out(dropped_);
     out(offset_m);

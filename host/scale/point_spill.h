@@ -36,6 +36,9 @@ struct Point {
     float x = 0, y = 0, z = 0;
 };
 
+// Is there once all points are sorted.
+inline constexpr const char* bins_name = "bins.bin";
+
 // A cloud on disk, sorted into bins. Within a bin the points keep their order.
 class SpilledPoints {
   public:
@@ -60,15 +63,11 @@ class SpilledPoints {
     bool coloured() const { return coloured_; }  // some point's colour is known
 
     // Calls use(points, colours) for the bin's portions in order, without colours where the cloud
-    // has none; or use(points). Throws Error(input) naming the file where one is not what was
-    // written.
+    // has none. Throws Error(input) naming the file where one is not what was written.
     using Use = std::function<void(std::span<const Point>, std::span<const Rgb8>)>;
     void read(std::size_t bin, const Use& use) const;
-    void read_points(std::size_t bin, const std::function<void(std::span<const Point>)>& use) const;
 
   private:
-    void read_portions(std::size_t bin, bool colours, const Use& use) const;
-
     std::filesystem::path file_, colour_file_;
     std::vector<BinPoints> bins_;
     bool coloured_ = false;
@@ -77,7 +76,7 @@ class SpilledPoints {
 };
 
 // Writes points into `folder` as they come, sorted into bins: points.bin, colours.bin with those of
-// the same points where the first have any, and bins.bin when all are in.
+// the same points where the first have any, and bins_name when all are in.
 class PointSpill {
   public:
     // Holds at most about `buffer_bytes` of points.

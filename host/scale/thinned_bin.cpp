@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <numeric>
 #include <string>
-#include <system_error>
+#include <string_view>
 
 #include "core/field_rules.h"
 #include "core/sorted_order.h"
-#include "geometry/cell_grid.h"
 #include "scale/binary_file.h"
 
 namespace topple::tiles {
@@ -21,16 +20,7 @@ std::string name_of(const Bin& bin) {
     return std::to_string(bin[0]) + "_" + std::to_string(bin[1]) + "_" + std::to_string(bin[2]);
 }
 
-// For each point, in order, the place of its cell; and the cell of each place.
-fs::path places_file(const fs::path& folder, const Bin& bin) {
-    return folder / ("places-" + name_of(bin));
-}
-fs::path order_file(const fs::path& folder, const Bin& bin) {
-    return folder / ("order-" + name_of(bin));
-}
-fs::path cells_file(const fs::path& folder, const Bin& bin) {
-    return folder / thinned_name(bin);
-}
+constexpr const char *cells_prefix = "cells-", *numbers_prefix = "numbers-";
 
 template <class Io, class Cells>
 void cell_fields(Io& io, Cells& cells) {
@@ -43,8 +33,12 @@ void cell_fields(Io& io, Cells& cells) {
     for (auto* channel : {&cells.green, &cells.blue}) io(*channel, length(cells.red.size()));
 }
 
-// Points whose cells are read at a time.
-constexpr std::size_t thinned_portion = 1u << 13;
+template <class Io, class Numbers>
+void number_fields(Io& io, Numbers& slab, Numbers& in_slab) {
+    io(slab, [](const auto& firsts) { return std::ranges::is_sorted(firsts) && !firsts.empty(); });
+    io(in_slab);
+    io.expect(slab.back() == in_slab.size());
+}
 
 // Sums of the points in each cell, found by key through open addressing. Places are given out in
 // the order in which cells are met.
@@ -52,7 +46,7 @@ class CellSums {
   public:
     CellSums() { grow(1u << 12); }
 
-    std::uint32_t add(std::uint64_t key, const std::array<double, 3>& point) {
+    std::uint32_t add(std::uint64_t key, const Vec3& point) {
         if (2 * cells_.size() >= slots_.size()) grow(2 * slots_.size());
         std::size_t at = slot(key);
         if (slots_[at] == none) {
@@ -103,7 +97,7 @@ class CellSums {
 
     struct Cell {
         std::uint64_t key;
-        std::array<double, 3> sum;
+        Vec3 sum;
         std::uint32_t count;
     };
 
@@ -127,34 +121,6 @@ class CellSums {
     std::vector<std::array<std::uint64_t, 4>> colours_;  // sums of channels, and how many
 };
 
-// Writes places, portion by portion.
-class PlacesWriter {
-  public:
-    explicit PlacesWriter(const fs::path& file) : out_(file) { portion_.reserve(thinned_portion); }
-    void add(std::uint32_t place) {
-        portion_.push_back(place);
-        ++points_;
-        if (portion_.size() == thinned_portion) flush();
-    }
-    void finish() {
-        if (!portion_.empty()) flush();
-        out_.finish();
-    }
-    std::uint64_t points() const { return points_; }
-    const std::vector<PortionWriter::Sum>& sums() const { return sums_; }
-
-  private:
-    void flush() {
-        sums_.push_back(out_.add(portion_));
-        portion_.clear();
-    }
-
-    PortionWriter out_;
-    std::vector<std::uint32_t> portion_;
-    std::vector<PortionWriter::Sum> sums_;
-    std::uint64_t points_ = 0;
-};
-
 }  // namespace
 
 double dividing_cell(double cell_m) {
@@ -162,115 +128,80 @@ double dividing_cell(double cell_m) {
 }
 
 std::string thinned_name(const Bin& bin) {
-    return "cells-" + name_of(bin);
+    return cells_prefix + name_of(bin);
+}
+
+std::vector<std::string> files_of_thinned(const std::string& name) {
+    if (!name.starts_with(cells_prefix)) return {};
+    return {name, numbers_prefix + name.substr(std::string_view(cells_prefix).size())};
 }
 
 void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const fs::path& folder) {
     const Bin& at = points.bins()[bin].bin;
-    const auto cells = static_cast<std::int64_t>(std::llround(bin_edge_m / cell_m));
-    const std::array<double, 3> low{at[0] * bin_edge_m, at[1] * bin_edge_m, at[2] * bin_edge_m};
+    const BinGrid grid(at, cell_m);
     constexpr std::size_t at_once = 32;  // points whose cells are asked for before they are needed
     CellSums sums;
-    PlacesWriter places(places_file(folder, at));
     points.read(bin, [&](std::span<const Point> portion, std::span<const Rgb8> colours) {
         std::array<std::uint64_t, at_once> keys{};
-        std::array<std::array<double, 3>, at_once> in_bin{};
+        std::array<Vec3, at_once> inside{};
         for (std::size_t first = 0; first < portion.size(); first += at_once) {
             const std::size_t count = std::min(at_once, portion.size() - first);
             for (std::size_t n = 0; n < count; ++n) {
-                const Point& p = portion[first + n];
-                // Relative to the bin, so that the mean keeps the floats' accuracy.
-                in_bin[n] = {p.x - low[0], p.y - low[1], p.z - low[2]};
-                keys[n] = 0;
-                for (const double c : in_bin[n]) {
-                    const auto cell = std::clamp<std::int64_t>(
-                        static_cast<std::int64_t>(std::floor(c / cell_m)), 0, cells - 1);
-                    keys[n] = keys[n] * static_cast<std::uint64_t>(cells) +
-                              static_cast<std::uint64_t>(cell);
-                }
+                inside[n] = grid.inside(portion[first + n]);
+                keys[n] = grid.cell_at(inside[n]);
                 sums.expect(keys[n]);
             }
             for (std::size_t n = 0; n < count; ++n) sums.expect_cell(keys[n]);
             for (std::size_t n = 0; n < count; ++n) {
-                const std::uint32_t place = sums.add(keys[n], in_bin[n]);
+                const std::uint32_t place = sums.add(keys[n], inside[n]);
                 if (!colours.empty()) sums.add_colour(place, colours[first + n]);
-                places.add(place);
             }
         }
     });
-    places.finish();
-    const std::vector<std::uint32_t> order = sorted_order(sums.keys());
-    std::vector<std::uint32_t> rank(order.size());
+    const std::vector<std::uint64_t> keys = sums.keys();
+    const std::uint64_t of_slab = grid.side * grid.side;
+    std::vector<std::uint32_t> slab(grid.side + 1, 0), in_slab;
     ThinnedBin out;
-    for (std::uint32_t n = 0; n < order.size(); ++n) {
-        rank[order[n]] = n;
-        out.x.push_back(static_cast<float>(low[0] + sums.mean(order[n], 0)));
-        out.y.push_back(static_cast<float>(low[1] + sums.mean(order[n], 1)));
-        out.z.push_back(static_cast<float>(low[2] + sums.mean(order[n], 2)));
-        out.points.push_back(sums.count(order[n]));
+    for (const std::uint32_t place : sorted_order(keys)) {
+        ++slab[keys[place] / of_slab + 1];
+        in_slab.push_back(static_cast<std::uint32_t>(keys[place] % of_slab));
+        out.x.push_back(grid.outside(sums.mean(place, 0), 0));
+        out.y.push_back(grid.outside(sums.mean(place, 1), 1));
+        out.z.push_back(grid.outside(sums.mean(place, 2), 2));
+        out.points.push_back(sums.count(place));
         if (!points.coloured()) continue;
-        const Rgb8 colour = sums.colour(order[n]);
+        const Rgb8 colour = sums.colour(place);
         out.red.push_back(colour[0]);
         out.green.push_back(colour[1]);
         out.blue.push_back(colour[2]);
     }
-    BinaryWriter order_out(order_file(folder, at));
-    order_out(rank);
-    order_out(places.points());
-    order_out(places.sums());
-    order_out.finish();
-    BinaryWriter file(cells_file(folder, at));
+    std::partial_sum(slab.begin(), slab.end(), slab.begin());
+    BinaryWriter numbers(folder / (numbers_prefix + name_of(at)));
+    number_fields(numbers, slab, in_slab);
+    numbers.finish();
+    BinaryWriter file(folder / thinned_name(at));
     cell_fields(file, out);
     file.finish();
 }
 
-CellsOfPoints::CellsOfPoints(const fs::path& folder, const Bin& bin)
-    : file_(places_file(folder, bin)) {
-    BinaryReader order(order_file(folder, bin));
-    order(cell_of_place_, [](const auto& cells) { return rules::ids(cells.size())(cells); });
-    order(points_);
-    order(sums_, rules::length(points_ / thinned_portion + (points_ % thinned_portion > 0)));
-    if (!PortionReader::holds<std::uint32_t>(file_, points_)) damaged_file(file_);
+CellsOfPoints::CellsOfPoints(const fs::path& folder, const Bin& bin, double cell_m)
+    : grid_(bin, cell_m) {
+    BinaryReader in(folder / (numbers_prefix + name_of(bin)));
+    number_fields(in, slab_, in_slab_);
+    in.expect(slab_.size() == grid_.side + 1);
 }
 
-std::uint32_t CellsOfPoints::next() {
-    if (at_ == portion_.size()) {
-        if (read_ == points_)
-            io::fail(file_, "has fewer points than the scan: the scan changed while it was parsed");
-        portion_.resize(std::min<std::uint64_t>(thinned_portion, points_ - read_));
-        PortionReader(file_).read(read_, sums_[read_ / thinned_portion], portion_);
-        read_ += portion_.size();
-        at_ = 0;
-    }
-    const std::uint32_t place = portion_[at_++];
-    if (place >= cell_of_place_.size()) damaged_file(file_);
-    return cell_of_place_[place];
-}
-
-void check_thinned(const fs::path& folder, const Bin& bin) {
-    const std::size_t count = read_thinned(folder, bin).size();
-    CellsOfPoints cells(folder, bin);
-    if (cells.cells() != count) damaged_file(order_file(folder, bin));
-    for (std::uint64_t n = 0; n < cells.points(); ++n) cells.next();
-}
-
-std::optional<Bin> bin_of_name(const std::string& name) {
-    Bin bin{};
-    if (std::sscanf(name.c_str(), "cells-%d_%d_%d", &bin[0], &bin[1], &bin[2]) != 3 ||
-        thinned_name(bin) != name)
-        return std::nullopt;
-    return bin;
-}
-
-void remove_thinned(const fs::path& folder, const Bin& bin) {
-    std::error_code error;
-    for (const fs::path& file :
-         {cells_file(folder, bin), order_file(folder, bin), places_file(folder, bin)})
-        fs::remove(file, error);
+std::optional<std::uint32_t> CellsOfPoints::find(const Point& point) const {
+    const std::uint64_t cell = grid_.cell_at(grid_.inside(point));
+    const std::uint64_t of_slab = grid_.side * grid_.side, x = cell / of_slab;
+    const auto end = in_slab_.begin() + slab_[x + 1];
+    const auto found = std::lower_bound(in_slab_.begin() + slab_[x], end, cell % of_slab);
+    if (found == end || *found != cell % of_slab) return std::nullopt;
+    return static_cast<std::uint32_t>(found - in_slab_.begin());
 }
 
 ThinnedBin read_thinned(const fs::path& folder, const Bin& bin) {
-    BinaryReader in(cells_file(folder, bin));
+    BinaryReader in(folder / thinned_name(bin));
     ThinnedBin out;
     cell_fields(in, out);
     return out;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -25,38 +27,56 @@ struct ThinnedBin {
 // The largest size that divides bin_edge_m and is not above `cell_m`.
 double dividing_cell(double cell_m);
 
-// Thins a bin and writes it to `folder`, with the cell of each of its points. Holds the cells, and
-// a portion of the points at a time.
+// Thins a bin and writes it to `folder`. Holds the cells, and a portion of the points at a time.
 void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m,
               const std::filesystem::path& folder);
 
 // The file that comes last: where it is in the folder, the bin is done.
 std::string thinned_name(const Bin& bin);
+// All files of the bin whose file thinned_name() names so; none where it names none.
+std::vector<std::string> files_of_thinned(const std::string& name);
 ThinnedBin read_thinned(const std::filesystem::path& folder, const Bin& bin);
 
-// The cells of a bin's points, in the points' order, a portion at a time.
-class CellsOfPoints {
+// A bin's cells by number: cell (x, y, z) of it is (x * side + y) * side + z.
+class BinGrid {
   public:
-    CellsOfPoints(const std::filesystem::path& folder, const Bin& bin);
-    // Throws Error(input) beyond the last point.
-    std::uint32_t next();
-    std::uint64_t points() const { return points_; }
-    std::size_t cells() const { return cell_of_place_.size(); }
+    BinGrid(const Bin& bin, double cell_m)
+        : side(static_cast<std::uint64_t>(std::llround(bin_edge_m / cell_m))),
+          low_{bin[0] * bin_edge_m, bin[1] * bin_edge_m, bin[2] * bin_edge_m},
+          cell_m_(cell_m) {}
+    const std::uint64_t side;  // cells along an edge
+    // Relative to the bin's lowest corner, so that means keep the floats' accuracy; and back.
+    Vec3 inside(const Point& p) const { return {p.x - low_[0], p.y - low_[1], p.z - low_[2]}; }
+    float outside(double inside, std::size_t axis) const {
+        return static_cast<float>(low_[axis] + inside);
+    }
+    std::uint64_t cell_at(const Vec3& inside) const {
+        std::uint64_t cell = 0;
+        for (const double c : inside) {
+            const auto last = static_cast<std::int64_t>(side) - 1;
+            cell = cell * side + static_cast<std::uint64_t>(std::clamp<std::int64_t>(
+                                     static_cast<std::int64_t>(std::floor(c / cell_m_)), 0, last));
+        }
+        return cell;
+    }
 
   private:
-    std::filesystem::path file_;
-    std::uint64_t points_ = 0, read_ = 0;
-    std::vector<std::uint32_t> cell_of_place_, portion_;
-    std::vector<std::uint64_t> sums_;  // of the portions
-    std::size_t at_ = 0;
+    Vec3 low_;
+    double cell_m_;
 };
 
-// Throws Error(input) naming the file where some of a bin's is not what was written.
-void check_thinned(const std::filesystem::path& folder, const Bin& bin);
+// Which of a thinned bin's cells a point is in.
+class CellsOfPoints {
+  public:
+    CellsOfPoints(const std::filesystem::path& folder, const Bin& bin, double cell_m);
+    // None: the bin was thinned without this point.
+    std::optional<std::uint32_t> find(const Point& point) const;
+    std::size_t size() const { return in_slab_.size(); }
 
-// The bin whose file thinned_name() names so; nothing where it names none.
-std::optional<Bin> bin_of_name(const std::string& name);
-// Removes all files of a bin.
-void remove_thinned(const std::filesystem::path& folder, const Bin& bin);
+  private:
+    BinGrid grid_;
+    // Cells by x, and of each of these slabs the rest of their numbers, ascending.
+    std::vector<std::uint32_t> slab_, in_slab_;
+};
 
 }  // namespace topple::tiles

@@ -44,9 +44,6 @@ namespace fs = std::filesystem;
 // Files below this size hold no more points than that: ten bytes a point are hardly ever too few.
 constexpr std::uint64_t small_file = 10 * most_points_at_once;
 
-// Is there once all points are sorted.
-constexpr const char* sorted_points = "bins.bin";
-
 // Points, and thinned points, that a guess at the whole is made from.
 constexpr std::uint64_t spacing_points = 1'500'000, frame_points = 1'200'000;
 // Points of the scene that a caller gets, and the report shows.
@@ -68,7 +65,7 @@ std::uint64_t spill_bytes(const ParseOptions& options) {
 // Sorts the cloud's points into bins on disk.
 void spill(const fs::path& input, const tiles::WorkFolder& work, const ParseOptions& options,
            StageClock& stage) {
-    if (work.has(sorted_points)) return;
+    if (work.has(tiles::bins_name)) return;
     tiles::PointSpill out(work.path(), spill_bytes(options));
     std::error_code error;
     // A guess, for the progress alone.
@@ -99,7 +96,7 @@ double spacing_in(const tiles::SpilledPoints& points, std::size_t bin) {
         std::min(1.0, static_cast<double>(spacing_points) / static_cast<double>(of_bin.points));
     const double end = (of_bin.bin[0] + share) * tiles::bin_edge_m;
     PointCloud cloud;
-    points.read_points(bin, [&](std::span<const tiles::Point> portion) {
+    points.read(bin, [&](std::span<const tiles::Point> portion, std::span<const Rgb8>) {
         for (const tiles::Point& p : portion) {
             if (p.x > end) continue;
             cloud.x.push_back(p.x);
@@ -299,7 +296,7 @@ std::optional<WorkLeft> work_left(const fs::path& input, const ParseOptions& opt
     try {
         if (!tiles::is_work_folder(folder, manifest(input, options))) return std::nullopt;
         const std::set<std::string> there = tiles::names_in(folder);
-        if (!there.contains(sorted_points)) return std::nullopt;
+        if (!there.contains(tiles::bins_name)) return std::nullopt;
         WorkLeft left;
         if (!there.contains(tiles::layout_name)) return left;
         left.blocks = tiles::read_layout(folder).blocks.size();

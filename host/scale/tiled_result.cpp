@@ -93,14 +93,14 @@ void TiledResult::write_points(const std::filesystem::path& file,
         const std::vector<std::int32_t>& label;
     };
     std::map<tiles::Bin, Open> open;
+    const auto changed = [&] { io::fail(input_, "changed while it was parsed"); };
     const auto opened = [&](const tiles::Bin& bin) {
         const auto at = open.find(bin);
         if (at != open.end()) return at;
         const auto place = std::ranges::lower_bound(bins_, bin);
-        if (place == bins_.end() || *place != bin) io::fail(input_, "changed while it was parsed");
+        if (place == bins_.end() || *place != bin) changed();
         return open
-            .emplace(bin,
-                     Open{tiles::CellsOfPoints(work_->path(), bin), label_[place - bins_.begin()]})
+            .emplace(bin, Open{{work_->path(), bin, layout_.cell_m}, label_[place - bins_.begin()]})
             .first;
     };
     auto last = open.end();  // most points lie where the one before them does
@@ -109,7 +109,9 @@ void TiledResult::write_points(const std::filesystem::path& file,
         for (std::size_t n = 0; n < portion.size(); ++n) {
             const tiles::Bin bin = tiles::bin_of(portion.x[n], portion.y[n], portion.z[n]);
             if (last == open.end() || last->first != bin) last = opened(bin);
-            const std::int32_t primitive = last->second.label.at(last->second.cells.next());
+            const auto cell = last->second.cells.find({portion.x[n], portion.y[n], portion.z[n]});
+            if (!cell) changed();
+            const std::int32_t primitive = last->second.label.at(*cell);
             const Rgb8 own = coloured
                                  ? Rgb8{portion.red.at(n), portion.green.at(n), portion.blue.at(n)}
                                  : Rgb8{};

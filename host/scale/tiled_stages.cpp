@@ -198,7 +198,7 @@ std::function<void()> part_of_stage(Crew& crew, device::Device& device, const st
 std::string options_text(const ParseOptions& o) {
     char text[256];
     // To be counted up where the files of a work folder change within a version.
-    constexpr int layout = 2;
+    constexpr int layout = 3;
     std::snprintf(text, sizeof(text), " voxel %a unit %a up %a %a %a version %s layout %d",
                   o.voxel_m, o.unit_m, o.up ? (*o.up)[0] : 0, o.up ? (*o.up)[1] : 0,
                   o.up ? (*o.up)[2] : 0, version, layout);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -24,32 +23,42 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view part_suffix = ".part";
 
-// Reads a file from end to end. What is in it whoever reads it asks.
-void check_binary(const fs::path& file) {
-    const BinaryReader whole(file);
-}
-
-// Whether `check` finds nothing wrong with what it reads. Memory that runs out is no damage.
+// Whether `check` finds nothing wrong with what it reads. That memory runs out, or the parse was
+// cancelled, is no damage.
 template <class Check>
 bool is_whole(const Check& check) {
     try {
         check();
         return true;
-    } catch (const Error&) {
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::cancelled) throw;
         return false;
     }
 }
 
+// Reads each of the files from end to end. What is in it whoever reads it asks.
+bool are_whole(const fs::path& folder, const std::vector<std::string>& names) {
+    return is_whole([&] {
+        for (const std::string& name : names) const BinaryReader whole(folder / name);
+    });
+}
+
+// What an earlier run has finished with the file of this name: it is of use only together. None
+// where nothing was finished with it.
+std::vector<std::string> group_of(const std::string& name) {
+    if (name == layout_name || name == bins_name || name.starts_with(block_prefix)) return {name};
+    return files_of_thinned(name);
+}
+
 // Of the points that were sorted into bins, with their colours.
 bool points_are_whole(const fs::path& folder, const std::function<void()>& poll) {
-    std::optional<SpilledPoints> points;
-    bool whole = is_whole([&] { points.emplace(folder); });
-    for (std::size_t bin = 0; whole && bin < points->bins().size(); ++bin) {
-        poll();
-        whole = is_whole(
-            [&] { points->read(bin, [](std::span<const Point>, std::span<const Rgb8>) {}); });
-    }
-    return whole;
+    return is_whole([&] {
+        const SpilledPoints points(folder);
+        for (std::size_t bin = 0; bin < points.bins().size(); ++bin) {
+            poll();
+            points.read(bin, [](std::span<const Point>, std::span<const Rgb8>) {});
+        }
+    });
 }
 
 }  // namespace
@@ -58,10 +67,9 @@ bool is_work_file(const std::string& name) {
     std::string_view rest = name;
     if (rest.ends_with(part_suffix)) rest.remove_suffix(part_suffix.size());
     static constexpr std::array<std::string_view, 6> single{
-        manifest_name, FolderLock::file_name, "points.bin", "colours.bin", "bins.bin", layout_name};
+        manifest_name, FolderLock::file_name, "points.bin", "colours.bin", bins_name, layout_name};
     if (std::ranges::find(single, rest) != single.end()) return true;
-    static constexpr std::array<std::string_view, 4> numbered{"cells-", "order-", "places-",
-                                                              block_prefix};
+    static constexpr std::array<std::string_view, 3> numbered{"cells-", "numbers-", block_prefix};
     return std::ranges::any_of(numbered, [&](std::string_view prefix) {
         return rest.size() > prefix.size() && rest.starts_with(prefix) &&
                rest.find_first_not_of("0123456789_-", prefix.size()) == std::string_view::npos;
@@ -75,35 +83,17 @@ bool has_mark(const fs::path& file) {
 std::vector<std::string> remove_damaged(const fs::path& folder, const std::function<void()>& poll) {
     std::vector<std::string> damaged;
     std::error_code error;
-    const std::set<std::string> names = names_in(folder);
-    const auto remove = [&](const std::string& name) {
+    for (const std::string& name : names_in(folder)) {
+        const bool unfinished = name.ends_with(part_suffix);
+        const std::vector<std::string> files = unfinished ? std::vector{name} : group_of(name);
+        if (files.empty()) continue;
         poll();
-        fs::remove(folder / name, error);
-    };
-    for (const std::string& name : names) {
-        if (name.ends_with(part_suffix)) {
-            remove(name);
-        } else if (const auto bin = bin_of_name(name)) {
-            poll();
-            if (is_whole([&] { check_thinned(folder, *bin); })) continue;
+        if (!unfinished) {
+            if (are_whole(folder, files) && (name != bins_name || points_are_whole(folder, poll)))
+                continue;
             damaged.push_back(name);
-            remove_thinned(folder, *bin);
-        } else if (name == layout_name || name.starts_with(block_prefix)) {
-            poll();
-            const bool whole = is_whole([&] {
-                if (name == layout_name)
-                    read_layout(folder);
-                else
-                    check_binary(folder / name);
-            });
-            if (whole) continue;
-            damaged.push_back(name);
-            remove(name);
-        } else if (name == "bins.bin") {
-            if (points_are_whole(folder, poll)) continue;
-            damaged.push_back(name);
-            remove(name);
         }
+        for (const std::string& file : files) fs::remove(folder / file, error);
     }
     return damaged;
 }

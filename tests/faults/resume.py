@@ -123,7 +123,7 @@ class Trials:
         wrong = self.wrong(code, err)
         told = "is damaged and is made anew" in err
         # Without its last file a group is not finished, and none of it is looked at; without its manifest nothing is.
-        group = "cells-" + name.split("-", 1)[1] if name.startswith(("places-", "order-")) else name
+        group = "cells-" + name.split("-", 1)[1] if name.startswith("numbers-") else name
         group = "bins.bin" if name in ("points.bin", "colours.bin") else group
         if not wrong and not told and name != "topple-work" and group in before:
             wrong = "not told of " + name

@@ -53,7 +53,7 @@ TEST(Spill, KeepsThePointsOfEachBinInOrderWhateverItsBuffer) {
         for (std::size_t b = 0; b < points.bins().size(); ++b, ++bin) {
             EXPECT_EQ(points.bins()[b].bin, bin->first);
             std::vector<float> x;
-            points.read_points(b, [&](std::span<const Point> portion) {
+            points.read(b, [&](std::span<const Point> portion, std::span<const Rgb8>) {
                 for (const Point& p : portion) x.push_back(p.x);
             });
             EXPECT_EQ(x, bin->second);
@@ -136,12 +136,13 @@ TEST(Thinning, KeepsTheMeanOfEachCellAndTheCellOfEachPoint) {
         const Bin& bin = points.bins()[b].bin;
         EXPECT_TRUE(names_in(folder.path()).contains(thinned_name(bin)));
         const ThinnedBin thinned = read_thinned(folder.path(), bin);
-        CellsOfPoints cells(folder.path(), bin);
+        const CellsOfPoints cells(folder.path(), bin, cell_m);
+        EXPECT_EQ(cells.size(), thinned.size());
         std::vector<std::array<double, 4>> sums(thinned.size());
         std::vector<std::array<std::int64_t, 3>> cell(thinned.size());
-        points.read_points(b, [&](std::span<const Point> portion) {
+        points.read(b, [&](std::span<const Point> portion, std::span<const Rgb8>) {
             for (const Point& p : portion) {
-                const std::uint32_t c = cells.next();
+                const std::uint32_t c = cells.find(p).value_or(UINT32_MAX);
                 ASSERT_LT(c, thinned.size());
                 sums[c][0] += p.x, sums[c][1] += p.y, sums[c][2] += p.z, sums[c][3] += 1;
                 const std::array<std::int64_t, 3> at{
@@ -152,7 +153,10 @@ TEST(Thinning, KeepsTheMeanOfEachCellAndTheCellOfEachPoint) {
                 EXPECT_EQ(cell[c], at);
             }
         });
-        EXPECT_THROW(cells.next(), Error);
+        const auto corner = [&](std::size_t axis) {
+            return static_cast<float>((bin[axis] + 0.999) * bin_edge_m);
+        };
+        EXPECT_EQ(cells.find({corner(0), corner(1), corner(2)}), std::nullopt);
         EXPECT_TRUE(std::ranges::is_sorted(cell));
         for (std::size_t c = 0; c < thinned.size(); ++c) {
             EXPECT_EQ(thinned.points[c], sums[c][3]);
