@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "device/device.h"
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+
 #include "core/thread_pool.h"
 #include "device/queue.h"
 #include "topple/error.h"
@@ -8,15 +12,8 @@
 namespace topple::device {
 
 const char* to_string(Backend backend) {
-    switch (backend) {
-        case Backend::native:
-            return "native";
-        case Backend::opencl:
-            return "opencl";
-        case Backend::vulkan:
-            return "vulkan";
-    }
-    return "?";
+    constexpr std::array names{"native", "opencl", "vulkan"};
+    return names.at(static_cast<std::size_t>(backend));
 }
 
 const DeviceInfo& describe(const Device& device) {
@@ -43,15 +40,8 @@ ThreadPool& Device::threads() {
 
 std::uint32_t Device::items_per_lane(const KernelSource& kernel) const {
     if (as_gpu_) return kernel.items_gpu;
-    switch (info_.backend) {
-        case Backend::native:
-            return kernel.items_native;
-        case Backend::opencl:
-            return kernel.items_opencl;
-        case Backend::vulkan:
-            return kernel.items_vulkan;
-    }
-    return 1;
+    const std::array items{kernel.items_native, kernel.items_opencl, kernel.items_vulkan};
+    return items.at(static_cast<std::size_t>(info_.backend));
 }
 
 Counters Device::counters() const {
@@ -67,6 +57,55 @@ void Device::count(std::span<const Dispatch> dispatches) {
         for (const BoundRange& range : dispatch.ranges) bound += range.bytes;
     }
     counters_.bytes_bound += bound;
+}
+
+void Device::copy(std::byte* to, const std::byte* from, std::uint64_t bytes) {
+    // More is shared out: memory that is touched first has to be cleared.
+    constexpr std::uint64_t at_once = 2u << 20;
+    threads().run(bytes, at_once, [&](std::uint64_t first, std::uint64_t last) {
+        std::memcpy(to + first, from + first, last - first);
+    });
+}
+
+void Device::write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
+    check_own(to);
+    if (std::byte* const address = to.in_place())
+        copy(address + offset, from.data(), from.size());
+    else
+        send(to, offset, from);
+    counters_.bytes_written += from.size();
+}
+
+void Device::read(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
+    check_own(from);
+    if (const std::byte* const address = from.in_place())
+        copy(to.data(), address + offset, to.size());
+    else
+        fetch(from, offset, to);
+    counters_.bytes_read += to.size();
+}
+
+void Device::fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) {
+    check_own(memory);
+    std::byte* const address = memory.in_place();
+    if (!address) return fill_apart(memory, offset, bytes, word);
+    auto* first = reinterpret_cast<std::uint32_t*>(address + offset);
+    std::fill(first, first + bytes / sizeof(word), word);
+}
+
+void Device::check_own(const Memory& memory) const {
+    if (&memory.device() != this)
+        throw Error(ErrorKind::device,
+                    "buffer " + memory.name() + " belongs to another device than " + info_.name);
+}
+
+void Device::check_allocation(std::uint64_t bytes, const std::string& name) const {
+    if (bytes > info_.limits.max_allocation_bytes)
+        throw Error(ErrorKind::device,
+                    "buffer " + name + ": " + std::to_string(bytes) + " bytes are more than the " +
+                        std::to_string(info_.limits.max_allocation_bytes) + " that " + info_.name +
+                        " allocates at once; use a larger ParseOptions::voxel_m, or the native "
+                        "backend");
 }
 
 std::uint64_t Queue::groups_for(const KernelSource& kernel, std::uint64_t count) const {

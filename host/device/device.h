@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "device/kernel.h"
@@ -26,15 +27,29 @@ namespace topple::device {
 // some OpenCL GPUs for 512.
 inline constexpr std::uint64_t slice_alignment = 512;
 
-// One allocation. Owned by whoever holds it; must not outlive its Device.
+class Device;
+
+// One allocation of a device. Owned by whoever holds it; must not outlive its Device.
 class Memory {
   public:
+    Memory(const Device& device, std::uint64_t bytes, std::string name)
+        : device_(device), bytes_(bytes), name_(std::move(name)) {}
     virtual ~Memory() = default;
-    virtual std::uint64_t bytes() const = 0;
-    virtual const std::string& name() const = 0;
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+    const Device& device() const { return device_; }
+    std::uint64_t bytes() const { return bytes_; }
+    const std::string& name() const { return name_; }
     // Where the host may read and write the memory in place between runs, without a copy; null
     // where the device's memory is not the host's.
     virtual std::byte* host_address() = 0;
+    // The same, null also where that would take a call of the driver first.
+    virtual std::byte* in_place() { return host_address(); }
+
+  private:
+    const Device& device_;
+    std::uint64_t bytes_;
+    std::string name_;
 };
 
 struct BoundRange {
@@ -68,10 +83,9 @@ class Device {
     // At least one byte is allocated, so that an empty array still has something to bind.
     // Throws Error(device) naming the buffer, its size and the limit.
     virtual std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) = 0;
-    virtual void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) = 0;
-    virtual void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) = 0;
-    virtual void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
-                      std::uint32_t word) = 0;
+    void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from);
+    void read(Memory& from, std::uint64_t offset, std::span<std::byte> to);
+    void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
 
     // Runs the dispatches in order, each seeing what the ones before it wrote, and waits once.
     // Throws Error(device) with the kernel's name and the driver's message.
@@ -87,8 +101,21 @@ class Device {
     std::uint32_t items_per_lane(const KernelSource& kernel) const;
 
   protected:
+    // write(), read() and fill() of memory that is not in place.
+    virtual void send(Memory&, std::uint64_t, std::span<const std::byte>) {}
+    virtual void fetch(Memory&, std::uint64_t, std::span<std::byte>) {}
+    virtual void fill_apart(Memory&, std::uint64_t, std::uint64_t, std::uint32_t) {}
     // Books a batch that was run.
     void count(std::span<const Dispatch> dispatches);
+    // As the kind of memory that this device makes. Throws Error(device) where it is another's.
+    template <class Own>
+    Own& own(Memory& memory) const {
+        check_own(memory);
+        return static_cast<Own&>(memory);
+    }
+    void check_own(const Memory& memory) const;
+    // Throws Error(device) where a GPU's, or its driver's, limit is below that.
+    void check_allocation(std::uint64_t bytes, const std::string& name) const;
 
     DeviceInfo info_;
     bool as_gpu_ = false;  // kernels take the form for real GPUs
@@ -100,6 +127,7 @@ class Device {
 
   private:
     friend class InUse;
+    void copy(std::byte* to, const std::byte* from, std::uint64_t bytes);
     std::unique_ptr<ThreadPool> threads_;  // made when first asked for
     std::atomic<bool> in_use_{false};
 };

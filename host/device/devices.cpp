@@ -13,14 +13,14 @@ namespace topple::device {
 namespace {
 
 bool has_gpu(const std::vector<Listing>& listings) {
-    return std::any_of(listings.begin(), listings.end(),
-                       [](const Listing& listing) { return listing.usable && listing.info.gpu; });
+    return std::ranges::any_of(
+        listings, [](const Listing& listing) { return listing.usable && listing.info.gpu; });
 }
 
 // Throws Error(device) where a backend's driver did not survive, or has nothing to offer.
 void check_driver(Backend backend) {
     const std::vector<Listing> found = probe(backend);
-    if (std::ranges::any_of(found, [](const Listing& listing) { return listing.usable; })) return;
+    if (std::ranges::any_of(found, &Listing::usable)) return;
     for (const Listing& listing : found) {
         // Other problems are told by opening it, with the device's name.
         if (listing.info.name.empty() && !listing.problem.empty())
@@ -57,12 +57,15 @@ std::unique_ptr<Device> open_best(unsigned threads) {
 
 }  // namespace
 
-std::vector<Listing> list_native() {
+Listing unusable(Backend backend, const std::string& problem) {
     Listing listing;
-    listing.backend = Backend::native;
-    listing.usable = true;
-    listing.info = open_native()->info();
-    return {listing};
+    listing.backend = backend;
+    listing.problem = problem;
+    return listing;
+}
+
+std::vector<Listing> list_native() {
+    return {{Backend::native, true, open_native()->info(), ""}};
 }
 
 std::vector<Listing> list_devices() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "device/device.h"
@@ -9,6 +10,8 @@
 // Finding and opening the devices of one backend; topple/device.h does so for all.
 namespace topple::device {
 
+// What stands in the place of devices, or of one, that can't be used.
+Listing unusable(Backend backend, const std::string& problem);
 std::vector<Listing> list_native();
 std::vector<Listing> list_opencl();
 std::vector<Listing> list_vulkan();

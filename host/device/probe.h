@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "topple/device.h"
@@ -12,5 +13,8 @@ namespace topple::device {
 // why. Nothing of the drivers is loaded into this process. Where there is no topple-reader they are
 // listed here. A probe that went well is not made again in this process.
 std::vector<Listing> probe(Backend backend);
+
+// In that process: lists the devices of a backend, "opencl" or "vulkan", as its answer.
+void answer_probe(const std::string& backend);
 
 }  // namespace topple::device

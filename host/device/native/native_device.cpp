@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <new>
 #include <string>
@@ -19,28 +18,22 @@ constexpr std::size_t alignment = 64;  // a cache line, and the widest vector re
 
 class NativeMemory final : public Memory {
   public:
-    NativeMemory(const Device& device, std::uint64_t bytes, std::string name)
-        : device_(device), bytes_(bytes), name_(std::move(name)) {
+    NativeMemory(const Device& device, std::uint64_t bytes, const std::string& name)
+        : Memory(device, bytes, name) {
         const std::uint64_t padded =
             (std::max<std::uint64_t>(bytes, 1) + alignment - 1) / alignment * alignment;
         data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
         if (!data_) {
             // Not of the kind device: that can be used, but the scan is too large for it.
-            throw Error(ErrorKind::input, "buffer " + name_ + ": the system has no " +
+            throw Error(ErrorKind::input, "buffer " + name + ": the system has no " +
                                               std::to_string(bytes) +
                                               " bytes left; use a larger ParseOptions::voxel_m");
         }
     }
     ~NativeMemory() override { std::free(data_); }
-    std::uint64_t bytes() const override { return bytes_; }
-    const std::string& name() const override { return name_; }
     std::byte* host_address() override { return data_; }
-    const Device& device() const { return device_; }
 
   private:
-    const Device& device_;
-    std::uint64_t bytes_;
-    std::string name_;
     std::byte* data_;
 };
 
@@ -68,8 +61,6 @@ std::string cpu_name() {
 }
 
 constexpr std::uint64_t least_items = 4096;  // 1 to 100 microseconds of work
-// Larger copies are shared out: memory that is touched first has to be cleared.
-constexpr std::uint64_t copied_at_once = 2u << 20;
 
 class NativeDevice final : public Device {
   public:
@@ -90,19 +81,6 @@ class NativeDevice final : public Device {
                                                " bytes; use a larger ParseOptions::voxel_m");
         }
         return std::make_unique<NativeMemory>(*this, bytes, name);
-    }
-    void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override {
-        copy(address(to) + offset, from.data(), from.size());
-        counters_.bytes_written += from.size();
-    }
-    void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) override {
-        copy(to.data(), address(from) + offset, to.size());
-        counters_.bytes_read += to.size();
-    }
-    void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
-              std::uint32_t word) override {
-        auto* first = reinterpret_cast<std::uint32_t*>(address(memory) + offset);
-        std::fill(first, first + bytes / sizeof(word), word);
     }
     void prepare(const KernelSource&) override {}
     ThreadPool& threads() override { return pool_; }
@@ -132,18 +110,9 @@ class NativeDevice final : public Device {
     }
 
   private:
-    void copy(std::byte* to, const std::byte* from, std::uint64_t bytes) {
-        pool_.run(bytes, copied_at_once, [&](std::uint64_t first, std::uint64_t last) {
-            std::memcpy(to + first, from + first, last - first);
-        });
-    }
     std::byte* address(Memory& memory) const {
-        auto* mine = dynamic_cast<NativeMemory*>(&memory);
-        if (!mine || &mine->device() != this) {
-            throw Error(ErrorKind::device, "buffer " + memory.name() +
-                                               " belongs to another device than " + info_.name);
-        }
-        return mine->host_address();
+        check_own(memory);
+        return memory.host_address();
     }
 
     ThreadPool pool_;

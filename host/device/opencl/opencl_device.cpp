@@ -2,7 +2,6 @@
 #include "device/opencl/opencl_device.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "device/opencl/opencl_error.h"
 #include "topple/error.h"
@@ -38,14 +37,6 @@ class Unmapped {
     std::vector<OpenClMemory*> memories_;
 };
 
-// The parts of buffers that a batch binds, released when it is done.
-struct Parts {
-    std::vector<cl_mem> all;
-    ~Parts() {
-        for (cl_mem part : all) clReleaseMemObject(part);
-    }
-};
-
 std::string one_line(std::string text) {
     while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.pop_back();
     std::ranges::replace(text, '\n', ' ');
@@ -54,13 +45,13 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-OpenClDevice::OpenClDevice(OpenClContext context) : context_(std::move(context)) {
-    info_ = describe_opencl(context_.device);
+OpenClDevice::OpenClDevice(std::unique_ptr<OpenClContext> context) : context_(std::move(context)) {
+    info_ = describe_opencl(context_->device);
     as_gpu_ = info_.gpu;
     shares_host_memory_ =
-        cl_value<cl_device_type>(context_.device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU;
+        cl_value<cl_device_type>(context_->device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU;
     const std::uint64_t alignment =
-        cl_value<cl_uint>(context_.device, CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8;
+        cl_value<cl_uint>(context_->device, CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8;
     if (alignment > slice_alignment) {
         throw Error(ErrorKind::device,
                     "OpenCL device " + info_.name + " aligns parts of buffers to " +
@@ -69,76 +60,36 @@ OpenClDevice::OpenClDevice(OpenClContext context) : context_(std::move(context))
     }
     // IEEE division and square root, where the device leaves a choice: all backends give the same
     // bits.
-    const auto floats = cl_value<cl_device_fp_config>(context_.device, CL_DEVICE_SINGLE_FP_CONFIG);
+    const auto floats = cl_value<cl_device_fp_config>(context_->device, CL_DEVICE_SINGLE_FP_CONFIG);
     build_options_ = "-cl-std=CL1.2";
     if (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) {
         build_options_ += " -cl-fp32-correctly-rounded-divide-sqrt";
     }
 }
 
-OpenClDevice::~OpenClDevice() {
-    for (auto& [source, built] : kernels_) {
-        clReleaseKernel(built.kernel);
-        clReleaseProgram(built.program);
-    }
-}
-
 std::unique_ptr<Memory> OpenClDevice::allocate(std::uint64_t bytes, const std::string& name) {
-    if (bytes > info_.limits.max_allocation_bytes) {
-        throw Error(
-            ErrorKind::device,
-            "buffer " + name + ": " + std::to_string(bytes) + " bytes are more than the " +
-                std::to_string(info_.limits.max_allocation_bytes) + " that " + info_.name +
-                " allocates at once; use a larger ParseOptions::voxel_m, or the native backend");
-    }
+    check_allocation(bytes, name);
     return std::make_unique<OpenClMemory>(*this, bytes, name);
 }
 
-OpenClMemory& OpenClDevice::own(Memory& memory) const {
-    auto* mine = dynamic_cast<OpenClMemory*>(&memory);
-    if (!mine || &mine->device() != this) {
-        throw Error(ErrorKind::device,
-                    "buffer " + memory.name() + " belongs to another device than " + info_.name);
-    }
-    return *mine;
+void OpenClDevice::send(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
+    cl_check(clEnqueueWriteBuffer(context_->queue, own<OpenClMemory>(to).buffer(), CL_TRUE, offset,
+                                  from.size(), from.data(), 0, nullptr, nullptr),
+             "writing buffer " + to.name());
 }
 
-void OpenClDevice::write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
-    OpenClMemory& memory = own(to);
-    if (memory.mapped()) {
-        std::memcpy(memory.host_address() + offset, from.data(), from.size());
-    } else {
-        cl_check(clEnqueueWriteBuffer(context_.queue, memory.buffer(), CL_TRUE, offset, from.size(),
-                                      from.data(), 0, nullptr, nullptr),
-                 "writing buffer " + memory.name());
-    }
-    counters_.bytes_written += from.size();
+void OpenClDevice::fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
+    cl_check(clEnqueueReadBuffer(context_->queue, own<OpenClMemory>(from).buffer(), CL_TRUE, offset,
+                                 to.size(), to.data(), 0, nullptr, nullptr),
+             "reading buffer " + from.name());
 }
 
-void OpenClDevice::read(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
-    OpenClMemory& memory = own(from);
-    if (memory.mapped()) {
-        std::memcpy(to.data(), memory.host_address() + offset, to.size());
-    } else {
-        cl_check(clEnqueueReadBuffer(context_.queue, memory.buffer(), CL_TRUE, offset, to.size(),
-                                     to.data(), 0, nullptr, nullptr),
-                 "reading buffer " + memory.name());
-    }
-    counters_.bytes_read += to.size();
-}
-
-void OpenClDevice::fill(Memory& target, std::uint64_t offset, std::uint64_t bytes,
-                        std::uint32_t word) {
-    OpenClMemory& memory = own(target);
-    if (memory.mapped()) {
-        auto* first = reinterpret_cast<std::uint32_t*>(memory.host_address() + offset);
-        std::fill(first, first + bytes / sizeof(word), word);
-        return;
-    }
-    cl_check(clEnqueueFillBuffer(context_.queue, memory.buffer(), &word, sizeof(word), offset,
-                                 bytes, 0, nullptr, nullptr),
+void OpenClDevice::fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
+                              std::uint32_t word) {
+    cl_check(clEnqueueFillBuffer(context_->queue, own<OpenClMemory>(memory).buffer(), &word,
+                                 sizeof(word), offset, bytes, 0, nullptr, nullptr),
              "filling buffer " + memory.name());
-    cl_check(clFinish(context_.queue), "filling buffer " + memory.name());
+    cl_check(clFinish(context_->queue), "filling buffer " + memory.name());
 }
 
 void OpenClDevice::prepare(const KernelSource& source) {
@@ -151,24 +102,25 @@ cl_kernel OpenClDevice::kernel(const KernelSource& source) {
         found = kernels_.emplace(&source, build(source)).first;
         ++counters_.kernel_builds;
     }
-    return found->second.kernel;
+    return found->second.kernel.get();
 }
 
 OpenClDevice::Built OpenClDevice::build(const KernelSource& source) const {
     const std::string where = std::string("kernel ") + source.name;
     cl_int code = CL_SUCCESS;
     Built built;
-    built.program = clCreateProgramWithSource(
-        context_.context, 1, const_cast<const char**>(&source.opencl), nullptr, &code);
+    const cl_program program = clCreateProgramWithSource(
+        context_->context, 1, const_cast<const char**>(&source.opencl), nullptr, &code);
     cl_check(code, where);
+    built.program.reset(program);
     const std::string options =
         build_options_ + " -D ITEMS=" + std::to_string(items_per_lane(source));
-    code = clBuildProgram(built.program, 1, &context_.device, options.c_str(), nullptr, nullptr);
+    code = clBuildProgram(program, 1, &context_->device, options.c_str(), nullptr, nullptr);
     std::size_t group = 0;
-    if (code == CL_SUCCESS) built.kernel = clCreateKernel(built.program, source.name, &code);
+    if (code == CL_SUCCESS) built.kernel.reset(clCreateKernel(program, source.name, &code));
     if (code == CL_SUCCESS) {
-        code = clGetKernelWorkGroupInfo(built.kernel, context_.device, CL_KERNEL_WORK_GROUP_SIZE,
-                                        sizeof(group), &group, nullptr);
+        code = clGetKernelWorkGroupInfo(built.kernel.get(), context_->device,
+                                        CL_KERNEL_WORK_GROUP_SIZE, sizeof(group), &group, nullptr);
     }
     if (code == CL_SUCCESS && group >= source.group_size) return built;
 
@@ -178,32 +130,29 @@ OpenClDevice::Built OpenClDevice::build(const KernelSource& source) const {
               std::to_string(group) + " work-items that " + info_.name + " can run together";
     } else {
         std::size_t size = 0;
-        clGetProgramBuildInfo(built.program, context_.device, CL_PROGRAM_BUILD_LOG, 0, nullptr,
-                              &size);
+        clGetProgramBuildInfo(program, context_->device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
         std::string log(size, '\0');
-        clGetProgramBuildInfo(built.program, context_.device, CL_PROGRAM_BUILD_LOG, size,
-                              log.data(), nullptr);
+        clGetProgramBuildInfo(program, context_->device, CL_PROGRAM_BUILD_LOG, size, log.data(),
+                              nullptr);
         why += ": ";
         why += one_line(log);
     }
-    if (built.kernel) clReleaseKernel(built.kernel);
-    clReleaseProgram(built.program);
     throw Error(ErrorKind::device, where + " does not build for " + info_.name + ": " + why);
 }
 
-void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<cl_mem>& parts) {
+void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts) {
     const std::string where = std::string("kernel ") + dispatch.kernel->name;
     const cl_kernel kernel_handle = kernel(*dispatch.kernel);
     cl_uint index = 0;
     for (const BoundRange& range : dispatch.ranges) {
-        const OpenClMemory& memory = own(*range.memory);
+        const OpenClMemory& memory = own<OpenClMemory>(*range.memory);
         cl_mem buffer = memory.buffer();
         if (range.offset != 0 || range.bytes != memory.bytes()) {
             const cl_buffer_region region{range.offset, std::max<std::size_t>(4, range.bytes)};
             cl_int code = CL_SUCCESS;
             buffer = clCreateSubBuffer(buffer, 0, CL_BUFFER_CREATE_TYPE_REGION, &region, &code);
             cl_check(code, where + ": part of buffer " + memory.name());
-            parts.push_back(buffer);
+            parts.emplace_back(buffer);
         }
         cl_check(clSetKernelArg(kernel_handle, index++, sizeof(buffer), &buffer),
                  where + ": buffer " + memory.name());
@@ -212,28 +161,29 @@ void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<cl_mem>& parts)
              where + ": parameters");
     const std::size_t local = dispatch.kernel->group_size;
     const std::size_t global = dispatch.groups * local;
-    cl_check(clEnqueueNDRangeKernel(context_.queue, kernel_handle, 1, nullptr, &global, &local, 0,
+    cl_check(clEnqueueNDRangeKernel(context_->queue, kernel_handle, 1, nullptr, &global, &local, 0,
                                     nullptr, nullptr),
              where);
 }
 
 void OpenClDevice::run(std::span<const Dispatch> dispatches) {
     for (const Dispatch& dispatch : dispatches) {
-        for (const BoundRange& range : dispatch.ranges) own(*range.memory);
+        for (const BoundRange& range : dispatch.ranges) check_own(*range.memory);
         kernel(*dispatch.kernel);
     }
     const Unmapped unmapped(dispatches);
-    Parts parts;
+    std::vector<ClMem> parts;
     // In-order: each dispatch sees what the ones before it wrote.
     try {
-        for (const Dispatch& dispatch : dispatches) enqueue(dispatch, parts.all);
+        for (const Dispatch& dispatch : dispatches) enqueue(dispatch, parts);
     } catch (const Error&) {
-        clFinish(context_.queue);
+        clFinish(context_->queue);
         throw;
     }
-    cl_check(clFinish(context_.queue), dispatches.empty() ? "empty batch"
-                                                          : std::string("batch ending in kernel ") +
-                                                                dispatches.back().kernel->name);
+    cl_check(clFinish(context_->queue),
+             dispatches.empty()
+                 ? "empty batch"
+                 : std::string("batch ending in kernel ") + dispatches.back().kernel->name);
     count(dispatches);
 }
 

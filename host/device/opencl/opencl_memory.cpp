@@ -12,14 +12,14 @@ constexpr std::uint64_t opencl_tail = 16;
 
 }  // namespace
 
-OpenClMemory::OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::string name)
-    : device_(device), bytes_(bytes), name_(std::move(name)) {
+OpenClMemory::OpenClMemory(const OpenClDevice& device, std::uint64_t bytes, const std::string& name)
+    : Memory(device, bytes, name), queue_(device.handles().queue) {
     cl_mem_flags flags = CL_MEM_READ_WRITE;
     if (device.shares_host_memory()) {
         const std::uint64_t padded = (bytes + opencl_tail + page - 1) / page * page;
         host_.reset(static_cast<std::byte*>(std::aligned_alloc(page, padded)));
         if (!host_) {
-            throw Error(ErrorKind::device, "buffer " + name_ + ": the system has no " +
+            throw Error(ErrorKind::device, "buffer " + name + ": the system has no " +
                                                std::to_string(bytes) +
                                                " bytes left; use a larger ParseOptions::voxel_m");
         }
@@ -28,19 +28,19 @@ OpenClMemory::OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::strin
     cl_int code = CL_SUCCESS;
     buffer_ =
         clCreateBuffer(device.handles().context, flags, bytes + opencl_tail, host_.get(), &code);
-    cl_check(code, "buffer " + name_ + " of " + std::to_string(bytes) + " bytes");
+    cl_check(code, "buffer " + name + " of " + std::to_string(bytes) + " bytes");
 }
 
-OpenClMemory::OpenClMemory(OpenClDevice& device, cl_mem buffer, std::uint64_t bytes,
-                           std::string name)
-    : device_(device), bytes_(bytes), name_(std::move(name)), buffer_(buffer) {
-    cl_check(clRetainMemObject(buffer_), "buffer " + name_);
+OpenClMemory::OpenClMemory(const OpenClDevice& device, cl_mem buffer, std::uint64_t bytes,
+                           const std::string& name)
+    : Memory(device, bytes, name), queue_(device.handles().queue), buffer_(buffer) {
+    cl_check(clRetainMemObject(buffer_), "buffer " + name);
 }
 
 OpenClMemory::~OpenClMemory() {
     if (mapped_) {
-        clEnqueueUnmapMemObject(device_.handles().queue, buffer_, host_.get(), 0, nullptr, nullptr);
-        clFinish(device_.handles().queue);
+        clEnqueueUnmapMemObject(queue_, buffer_, host_.get(), 0, nullptr, nullptr);
+        clFinish(queue_);
     }
     clReleaseMemObject(buffer_);
 }
@@ -54,17 +54,16 @@ std::byte* OpenClMemory::host_address() {
 void OpenClMemory::map() {
     if (mapped_) return;
     cl_int code = CL_SUCCESS;
-    clEnqueueMapBuffer(device_.handles().queue, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
-                       bytes_ + opencl_tail, 0, nullptr, nullptr, &code);
-    cl_check(code, "mapping buffer " + name_);
+    clEnqueueMapBuffer(queue_, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+                       bytes() + opencl_tail, 0, nullptr, nullptr, &code);
+    cl_check(code, "mapping buffer " + name());
     mapped_ = true;
 }
 
 void OpenClMemory::unmap() {
     if (!mapped_) return;
-    cl_check(
-        clEnqueueUnmapMemObject(device_.handles().queue, buffer_, host_.get(), 0, nullptr, nullptr),
-        "unmapping buffer " + name_);
+    cl_check(clEnqueueUnmapMemObject(queue_, buffer_, host_.get(), 0, nullptr, nullptr),
+             "unmapping buffer " + name());
     mapped_ = false;
 }
 

@@ -76,27 +76,22 @@ int rank(const Found& found) {
     return cl_value<cl_device_type>(found.device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_GPU ? 0 : 1;
 }
 
-OpenClContext make_context(const Found& found) {
+std::unique_ptr<OpenClContext> make_context(const Found& found) {
     const std::string where = "OpenCL device " + cl_text(found.device, CL_DEVICE_NAME);
-    OpenClContext made;
-    made.device = found.device;
-    made.owned = true;
+    auto made = std::make_unique<OpenClContext>();
+    made->device = found.device;
+    made->owned = true;
     const cl_context_properties properties[] = {
         CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(found.platform), 0};
     cl_int code = CL_SUCCESS;
-    made.context = clCreateContext(properties, 1, &found.device, nullptr, nullptr, &code);
+    made->context = clCreateContext(properties, 1, &found.device, nullptr, nullptr, &code);
     cl_check(code, where + ": context");
-    made.queue = clCreateCommandQueue(made.context, found.device, 0, &code);
+    made->queue = clCreateCommandQueue(made->context, found.device, 0, &code);
     cl_check(code, where + ": queue");
     return made;
 }
 
 }  // namespace
-
-OpenClContext::OpenClContext(OpenClContext&& other) noexcept
-    : context(other.context), device(other.device), queue(other.queue), owned(other.owned) {
-    other.owned = false;
-}
 
 OpenClContext::~OpenClContext() {
     if (!owned) return;
@@ -129,28 +124,20 @@ std::vector<Listing> list_opencl() {
     std::vector<Listing> listings;
     try {
         for (const Found& found : find_all()) {
-            Listing listing;
-            listing.backend = Backend::opencl;
-            listing.info = describe_opencl(found.device);
-            listing.usable = found.problem.empty();
-            listing.problem = found.problem;
-            listings.push_back(listing);
+            listings.push_back(unusable(Backend::opencl, found.problem));
+            listings.back().usable = found.problem.empty();
+            listings.back().info = describe_opencl(found.device);
         }
     } catch (const Error& error) {
-        Listing listing;
-        listing.backend = Backend::opencl;
-        listing.problem = error.what();
-        listings.push_back(listing);
+        listings.push_back(unusable(Backend::opencl, error.what()));
     }
     return listings;
 }
 
 std::unique_ptr<Device> open_opencl() {
     const std::lock_guard lock(drivers);
-    std::vector<Found> all = find_all();
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Found& a, const Found& b) { return rank(a) < rank(b); });
-    const Found& best = all.front();
+    const std::vector<Found> all = find_all();
+    const Found& best = *std::ranges::min_element(all, {}, [](const Found& f) { return rank(f); });
     if (!best.problem.empty()) {
         throw Error(ErrorKind::device, "OpenCL device " + cl_text(best.device, CL_DEVICE_NAME) +
                                            " can't be used: " + best.problem + opencl_mend);
@@ -159,23 +146,23 @@ std::unique_ptr<Device> open_opencl() {
 }
 
 std::shared_ptr<Device> adopt_opencl(const OpenClHandles& handles) {
-    OpenClContext given;
-    given.context = static_cast<cl_context>(handles.context);
-    given.device = static_cast<cl_device_id>(handles.device_id);
-    given.queue = static_cast<cl_command_queue>(handles.queue);
-    if (!given.context || !given.device || !given.queue) {
+    auto given = std::make_unique<OpenClContext>();
+    given->context = static_cast<cl_context>(handles.context);
+    given->device = static_cast<cl_device_id>(handles.device_id);
+    given->queue = static_cast<cl_command_queue>(handles.queue);
+    if (!given->context || !given->device || !given->queue) {
         throw Error(ErrorKind::device,
                     "adopt_opencl needs a context, a device and a queue, none of them null");
     }
     const std::lock_guard lock(drivers);
     cl_command_queue_properties properties = 0;
-    cl_check(clGetCommandQueueInfo(given.queue, CL_QUEUE_PROPERTIES, sizeof(properties),
+    cl_check(clGetCommandQueueInfo(given->queue, CL_QUEUE_PROPERTIES, sizeof(properties),
                                    &properties, nullptr),
              "adopt_opencl: queue");
     if (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) {
         throw Error(ErrorKind::device, "adopt_opencl needs an in-order queue");
     }
-    if (const std::string problem = problem_of(given.device); !problem.empty()) {
+    if (const std::string problem = problem_of(given->device); !problem.empty()) {
         throw Error(ErrorKind::device, "adopt_opencl: the device can't be used: " + problem);
     }
     return std::make_shared<OpenClDevice>(std::move(given));

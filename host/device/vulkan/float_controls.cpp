@@ -33,12 +33,11 @@ std::uint32_t opcode_and_length(Opcode opcode, std::uint32_t words) {
 }  // namespace
 
 FloatControls float_controls_of(VkPhysicalDevice physical) {
-    std::uint32_t count = 0;
-    vk_check(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr),
-             "listing extensions");
-    std::vector<VkExtensionProperties> extensions(count);
-    vk_check(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data()),
-             "listing extensions");
+    const auto extensions =
+        vk_list<VkExtensionProperties>([&](std::uint32_t* count, VkExtensionProperties* to) {
+            vk_check(vkEnumerateDeviceExtensionProperties(physical, nullptr, count, to),
+                     "listing extensions");
+        });
     const bool has = std::ranges::any_of(extensions, [](const VkExtensionProperties& extension) {
         return std::strcmp(extension.extensionName, VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME) ==
                0;

@@ -21,11 +21,8 @@ bool validation_wanted() {
 }
 
 bool validation_installed() {
-    std::uint32_t count = 0;
-    vkEnumerateInstanceLayerProperties(&count, nullptr);
-    std::vector<VkLayerProperties> layers(count);
-    vkEnumerateInstanceLayerProperties(&count, layers.data());
-    return std::any_of(layers.begin(), layers.end(), [](const VkLayerProperties& layer) {
+    const auto layers = vk_list<VkLayerProperties>(vkEnumerateInstanceLayerProperties);
+    return std::ranges::any_of(layers, [](const VkLayerProperties& layer) {
         return std::strcmp(layer.layerName, validation_layer) == 0;
     });
 }
@@ -115,11 +112,10 @@ void create_instance(VulkanContext& context) {
 }
 
 std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
-    std::uint32_t count = 0;
-    vk_check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "listing Vulkan devices");
-    std::vector<VkPhysicalDevice> devices(count);
-    vk_check(vkEnumeratePhysicalDevices(instance, &count, devices.data()),
-             "listing Vulkan devices");
+    std::vector<VkPhysicalDevice> devices =
+        vk_list<VkPhysicalDevice>([&](std::uint32_t* count, VkPhysicalDevice* to) {
+            vk_check(vkEnumeratePhysicalDevices(instance, count, to), "listing Vulkan devices");
+        });
     if (devices.empty())
         throw Error(ErrorKind::device, std::string("Vulkan finds no device") + vulkan_mend);
     return devices;
@@ -132,11 +128,9 @@ VkPhysicalDeviceProperties properties_of(VkPhysicalDevice physical) {
 }
 
 std::vector<VkQueueFamilyProperties> families_of(VkPhysicalDevice physical) {
-    std::uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-    return families;
+    return vk_list<VkQueueFamilyProperties>([&](std::uint32_t* count, VkQueueFamilyProperties* to) {
+        vkGetPhysicalDeviceQueueFamilyProperties(physical, count, to);
+    });
 }
 
 bool computes(const VkQueueFamilyProperties& family) {
@@ -190,17 +184,6 @@ void create_device(VulkanContext& context) {
 }
 
 }  // namespace
-
-VulkanContext::VulkanContext(VulkanContext&& other) noexcept
-    : instance(other.instance),
-      messenger(std::exchange(other.messenger, VK_NULL_HANDLE)),
-      physical(other.physical),
-      device(other.device),
-      queue(other.queue),
-      queue_family(other.queue_family),
-      owned(std::exchange(other.owned, false)),
-      float_controls(other.float_controls),
-      log(std::move(other.log)) {}
 
 VulkanContext::~VulkanContext() {
     if (!owned) return;
@@ -265,20 +248,19 @@ DeviceInfo describe_vulkan(VkPhysicalDevice physical) {
     return info;
 }
 
-VulkanContext open_vulkan_context() {
-    VulkanContext context;
-    create_instance(context);
-    std::vector<VkPhysicalDevice> devices = physical_devices(context.instance);
-    std::stable_sort(devices.begin(), devices.end(),
-                     [](VkPhysicalDevice a, VkPhysicalDevice b) { return rank(a) < rank(b); });
-    context.physical = devices.front();
-    if (const std::string problem = vulkan_problem(context.physical); !problem.empty()) {
+std::unique_ptr<VulkanContext> open_vulkan_context() {
+    auto context = std::make_unique<VulkanContext>();
+    create_instance(*context);
+    const std::vector<VkPhysicalDevice> devices = physical_devices(context->instance);
+    context->physical = *std::ranges::min_element(
+        devices, {}, [](VkPhysicalDevice physical) { return rank(physical); });
+    if (const std::string problem = vulkan_problem(context->physical); !problem.empty()) {
         throw Error(ErrorKind::device, std::string("Vulkan device ") +
-                                           properties_of(context.physical).deviceName +
+                                           properties_of(context->physical).deviceName +
                                            " can't be used: " + problem + vulkan_mend);
     }
-    context.queue_family = static_cast<std::uint32_t>(compute_family(context.physical));
-    create_device(context);
+    context->queue_family = static_cast<std::uint32_t>(compute_family(context->physical));
+    create_device(*context);
     return context;
 }
 
@@ -288,18 +270,12 @@ std::vector<Listing> list_vulkan() {
         VulkanContext context;
         create_instance(context);
         for (VkPhysicalDevice physical : physical_devices(context.instance)) {
-            Listing listing;
-            listing.backend = Backend::vulkan;
-            listing.info = describe_vulkan(physical);
-            listing.problem = vulkan_problem(physical);
-            listing.usable = listing.problem.empty();
-            listings.push_back(listing);
+            listings.push_back(unusable(Backend::vulkan, vulkan_problem(physical)));
+            listings.back().usable = listings.back().problem.empty();
+            listings.back().info = describe_vulkan(physical);
         }
     } catch (const Error& error) {
-        Listing listing;
-        listing.backend = Backend::vulkan;
-        listing.problem = error.what();
-        listings.push_back(listing);
+        listings.push_back(unusable(Backend::vulkan, error.what()));
     }
     return listings;
 }

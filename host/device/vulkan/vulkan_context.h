@@ -34,15 +34,15 @@ struct VulkanContext {
     std::unique_ptr<ValidationLog> log;  // null without validation
 
     VulkanContext() = default;
-    VulkanContext(VulkanContext&& other) noexcept;
-    VulkanContext& operator=(VulkanContext&&) = delete;
+    VulkanContext(const VulkanContext&) = delete;
+    VulkanContext& operator=(const VulkanContext&) = delete;
     ~VulkanContext();
 };
 
 // Opens the best usable device: a discrete, integrated or virtual GPU before a CPU, then in the
 // loader's order. With TOPPLE_VULKAN_VALIDATION=1 in the environment the validation layer is on,
 // where it is installed. Throws Error(device) with what would mend it.
-VulkanContext open_vulkan_context();
+std::unique_ptr<VulkanContext> open_vulkan_context();
 
 // What a device says of itself.
 DeviceInfo describe_vulkan(VkPhysicalDevice physical);

@@ -10,62 +10,44 @@
 
 namespace topple::device {
 
-VulkanDevice::VulkanDevice(VulkanContext context, const VulkanOptions& options)
+VulkanDevice::VulkanDevice(std::unique_ptr<VulkanContext> context, const VulkanOptions& options)
     : context_(std::move(context)), options_(options) {
-    info_ = describe_vulkan(context_.physical);
+    info_ = describe_vulkan(context_->physical);
     as_gpu_ = info_.gpu || options_.force_gpu_form;
-    vkGetPhysicalDeviceMemoryProperties(context_.physical, &memory_);
+    vkGetPhysicalDeviceMemoryProperties(context_->physical, &memory_);
     VkPhysicalDeviceProperties properties;
-    vkGetPhysicalDeviceProperties(context_.physical, &properties);
+    vkGetPhysicalDeviceProperties(context_->physical, &properties);
     max_groups_ =
         options_.max_groups ? options_.max_groups : properties.limits.maxComputeWorkGroupCount[0];
     unified_ = !options_.force_staging &&
                (properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ||
                 properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU);
-
-    try {
-        create_objects();
-    } catch (const Error&) {
-        release();
-        throw;
-    }
-}
-
-void VulkanDevice::create_objects() {
     auto pool = vk_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
     pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-    pool.queueFamilyIndex = context_.queue_family;
-    vk_check(vkCreateCommandPool(context_.device, &pool, nullptr, &command_pool_),
-             info_.name + ": command pool");
+    pool.queueFamilyIndex = context_->queue_family;
+    command_pool_ = vk_make(context_->device, vkCreateCommandPool, vkDestroyCommandPool, pool,
+                            info_.name + ": command pool");
     auto buffer =
         vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    buffer.commandPool = command_pool_;
+    buffer.commandPool = command_pool_.get();
     buffer.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     buffer.commandBufferCount = 1;
-    vk_check(vkAllocateCommandBuffers(context_.device, &buffer, &commands_),
+    vk_check(vkAllocateCommandBuffers(context_->device, &buffer, &commands_),
              info_.name + ": command buffer");
     const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
-    vk_check(vkCreateFence(context_.device, &fence, nullptr, &fence_), info_.name + ": fence");
+    fence_ =
+        vk_make(context_->device, vkCreateFence, vkDestroyFence, fence, info_.name + ": fence");
     if (!unified_) staging_ = create_staging(options_.staging_bytes);
 }
 
 VulkanDevice::~VulkanDevice() {
-    release();
-}
-
-void VulkanDevice::release() {
-    vkQueueWaitIdle(context_.queue);
-    for (auto& [source, built] : kernels_) destroy(built);
-    destroy(staging_);
-    if (descriptor_pool_) vkDestroyDescriptorPool(context_.device, descriptor_pool_, nullptr);
-    if (fence_) vkDestroyFence(context_.device, fence_, nullptr);
-    if (command_pool_) vkDestroyCommandPool(context_.device, command_pool_, nullptr);
+    vkQueueWaitIdle(context_->queue);
 }
 
 void VulkanDevice::check_validation(const std::string& what) {
-    if (!context_.log || context_.log->messages.empty()) return;
-    const std::string first = context_.log->messages.front();
-    context_.log->messages.clear();
+    if (!context_->log || context_->log->messages.empty()) return;
+    const std::string first = context_->log->messages.front();
+    context_->log->messages.clear();
     throw Error(ErrorKind::device, what + ": Vulkan validation: " + first);
 }
 
@@ -92,9 +74,8 @@ VulkanDevice::Built VulkanDevice::build(const KernelSource& source) const {
                         " are more than the " + std::to_string(info_.limits.max_group_size) +
                         " work-items that can run together");
     }
+    const VkDevice device = context_->device;
     Built built;
-    VkShaderModule module = VK_NULL_HANDLE;
-    VkResult result = VK_SUCCESS;
     std::vector<VkDescriptorSetLayoutBinding> bindings(source.bindings.size());
     for (std::uint32_t i = 0; i < bindings.size(); ++i) {
         bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
@@ -104,60 +85,43 @@ VulkanDevice::Built VulkanDevice::build(const KernelSource& source) const {
         VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     set.bindingCount = static_cast<std::uint32_t>(bindings.size());
     set.pBindings = bindings.data();
-    result = vkCreateDescriptorSetLayout(context_.device, &set, nullptr, &built.set_layout);
-    if (result == VK_SUCCESS) {
-        const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, source.params_bytes};
-        auto layout =
-            vk_struct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-        layout.setLayoutCount = 1;
-        layout.pSetLayouts = &built.set_layout;
-        layout.pushConstantRangeCount = 1;
-        layout.pPushConstantRanges = &push;
-        result = vkCreatePipelineLayout(context_.device, &layout, nullptr, &built.layout);
-    }
-    if (result == VK_SUCCESS) {
-        auto info =
-            vk_struct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-        const auto words = with_float_controls(source.spirv, context_.float_controls);
-        info.codeSize = words.size() * sizeof(words[0]);
-        info.pCode = words.data();
-        result = vkCreateShaderModule(context_.device, &info, nullptr, &module);
-    }
-    if (result == VK_SUCCESS) {
-        auto info =
-            vk_struct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-        // Work-group counts beyond the device's limit are split; the base keeps GROUP_ID right.
-        info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT;
-        info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module = module;
-        info.stage.pName = "main";
-        // ITEMS, and whether the driver divides as IEEE 754 says
-        // (kernels/dialect/glsl/prelude.glsl).
-        struct {
-            std::uint32_t items;
-            VkBool32 driver_is_exact;
-        } const constants{items_per_lane(source), as_gpu_ ? VK_FALSE : VK_TRUE};
-        const VkSpecializationMapEntry entries[] = {{0, 0, 4}, {1, 4, 4}};
-        const VkSpecializationInfo specialization{2, entries, sizeof(constants), &constants};
-        info.stage.pSpecializationInfo = &specialization;
-        info.layout = built.layout;
-        result = vkCreateComputePipelines(context_.device, VK_NULL_HANDLE, 1, &info, nullptr,
-                                          &built.pipeline);
-    }
-    if (module) vkDestroyShaderModule(context_.device, module, nullptr);
-    if (result != VK_SUCCESS) {
-        destroy(built);
-        vk_check(result, where);
-    }
+    built.set_layout =
+        vk_make(device, vkCreateDescriptorSetLayout, vkDestroyDescriptorSetLayout, set, where);
+    const VkDescriptorSetLayout set_layout = built.set_layout.get();
+    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, source.params_bytes};
+    auto layout =
+        vk_struct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+    layout.setLayoutCount = 1;
+    layout.pSetLayouts = &set_layout;
+    layout.pushConstantRangeCount = 1;
+    layout.pPushConstantRanges = &push;
+    built.layout = vk_make(device, vkCreatePipelineLayout, vkDestroyPipelineLayout, layout, where);
+    auto code = vk_struct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    const auto words = with_float_controls(source.spirv, context_->float_controls);
+    code.codeSize = words.size() * sizeof(words[0]);
+    code.pCode = words.data();
+    const auto module = vk_make(device, vkCreateShaderModule, vkDestroyShaderModule, code, where);
+    auto info =
+        vk_struct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+    // Work-group counts beyond the device's limit are split; the base keeps GROUP_ID right.
+    info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT;
+    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = module.get();
+    info.stage.pName = "main";
+    // ITEMS, and whether the driver divides as IEEE 754 says (kernels/dialect/glsl/prelude.glsl).
+    struct {
+        std::uint32_t items;
+        VkBool32 driver_is_exact;
+    } const constants{items_per_lane(source), as_gpu_ ? VK_FALSE : VK_TRUE};
+    const VkSpecializationMapEntry entries[] = {{0, 0, 4}, {1, 4, 4}};
+    const VkSpecializationInfo specialization{2, entries, sizeof(constants), &constants};
+    info.stage.pSpecializationInfo = &specialization;
+    info.layout = built.layout.get();
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    vk_check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), where);
+    built.pipeline = {pipeline, {device, vkDestroyPipeline}};
     return built;
-}
-
-void VulkanDevice::destroy(Built& built) const {
-    if (built.pipeline) vkDestroyPipeline(context_.device, built.pipeline, nullptr);
-    if (built.layout) vkDestroyPipelineLayout(context_.device, built.layout, nullptr);
-    if (built.set_layout) vkDestroyDescriptorSetLayout(context_.device, built.set_layout, nullptr);
-    built = {};
 }
 
 // Makes room for one descriptor set per dispatch; the pool only grows.
@@ -168,11 +132,11 @@ void VulkanDevice::reserve_descriptors(std::span<const Dispatch> dispatches) {
     }
     const auto sets = static_cast<std::uint32_t>(dispatches.size());
     if (descriptor_pool_ && sets <= pool_sets_ && descriptors <= pool_descriptors_) {
-        vk_check(vkResetDescriptorPool(context_.device, descriptor_pool_, 0), "descriptor pool");
+        vk_check(vkResetDescriptorPool(context_->device, descriptor_pool_.get(), 0),
+                 "descriptor pool");
         return;
     }
-    if (descriptor_pool_) vkDestroyDescriptorPool(context_.device, descriptor_pool_, nullptr);
-    descriptor_pool_ = VK_NULL_HANDLE;
+    descriptor_pool_.reset();
     pool_sets_ = std::max(2 * pool_sets_, sets);
     pool_descriptors_ = std::max(2 * pool_descriptors_, descriptors);
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, pool_descriptors_};
@@ -181,24 +145,25 @@ void VulkanDevice::reserve_descriptors(std::span<const Dispatch> dispatches) {
     info.maxSets = pool_sets_;
     info.poolSizeCount = 1;
     info.pPoolSizes = &size;
-    vk_check(vkCreateDescriptorPool(context_.device, &info, nullptr, &descriptor_pool_),
-             "descriptor pool");
+    descriptor_pool_ = vk_make(context_->device, vkCreateDescriptorPool, vkDestroyDescriptorPool,
+                               info, "descriptor pool");
 }
 
 VkDescriptorSet VulkanDevice::describe(const Dispatch& dispatch, const Built& built) {
     auto info =
         vk_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    info.descriptorPool = descriptor_pool_;
+    info.descriptorPool = descriptor_pool_.get();
     info.descriptorSetCount = 1;
-    info.pSetLayouts = &built.set_layout;
+    const VkDescriptorSetLayout layout = built.set_layout.get();
+    info.pSetLayouts = &layout;
     VkDescriptorSet set = VK_NULL_HANDLE;
-    vk_check(vkAllocateDescriptorSets(context_.device, &info, &set),
+    vk_check(vkAllocateDescriptorSets(context_->device, &info, &set),
              std::string("kernel ") + dispatch.kernel->name + ": descriptor set");
     std::vector<VkDescriptorBufferInfo> buffers(dispatch.ranges.size());
     std::vector<VkWriteDescriptorSet> writes(dispatch.ranges.size());
     for (std::uint32_t i = 0; i < buffers.size(); ++i) {
         const BoundRange& range = dispatch.ranges[i];
-        buffers[i] = {own(*range.memory).buffer(), range.offset,
+        buffers[i] = {own<VulkanMemory>(*range.memory).buffer(), range.offset,
                       std::max<std::uint64_t>(4, range.bytes)};
         writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
         writes[i].dstSet = set;
@@ -207,7 +172,7 @@ VkDescriptorSet VulkanDevice::describe(const Dispatch& dispatch, const Built& bu
         writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         writes[i].pBufferInfo = &buffers[i];
     }
-    vkUpdateDescriptorSets(context_.device, static_cast<std::uint32_t>(writes.size()),
+    vkUpdateDescriptorSets(context_->device, static_cast<std::uint32_t>(writes.size()),
                            writes.data(), 0, nullptr);
     return set;
 }
@@ -234,19 +199,20 @@ void VulkanDevice::submit(const std::string& what) {
     auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
     info.commandBufferCount = 1;
     info.pCommandBuffers = &commands_;
-    vk_check(vkResetFences(context_.device, 1, &fence_), what);
-    vk_check(vkQueueSubmit(context_.queue, 1, &info, fence_), what);
-    vk_check(vkWaitForFences(context_.device, 1, &fence_, VK_TRUE, UINT64_MAX), what);
+    const VkFence fence = fence_.get();
+    vk_check(vkResetFences(context_->device, 1, &fence), what);
+    vk_check(vkQueueSubmit(context_->queue, 1, &info, fence), what);
+    vk_check(vkWaitForFences(context_->device, 1, &fence, VK_TRUE, UINT64_MAX), what);
     check_validation(what);
 }
 
 void VulkanDevice::record(const Dispatch& dispatch) {
     const Built& built = kernel(*dispatch.kernel);
     const VkDescriptorSet set = describe(dispatch, built);
-    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.pipeline);
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.layout, 0, 1, &set, 0,
-                            nullptr);
-    vkCmdPushConstants(commands_, built.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.pipeline.get());
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.layout.get(), 0, 1,
+                            &set, 0, nullptr);
+    vkCmdPushConstants(commands_, built.layout.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
                        static_cast<std::uint32_t>(dispatch.params.size()), dispatch.params.data());
     for (std::uint64_t first = 0; first < dispatch.groups; first += max_groups_) {
         const std::uint64_t count = std::min<std::uint64_t>(max_groups_, dispatch.groups - first);
@@ -279,7 +245,7 @@ void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
 void VulkanDevice::run(std::span<const Dispatch> dispatches) {
     // All that can be wrong with a batch is found before any of it runs.
     for (const Dispatch& dispatch : dispatches) {
-        for (const BoundRange& range : dispatch.ranges) own(*range.memory);
+        for (const BoundRange& range : dispatch.ranges) check_own(*range.memory);
         kernel(*dispatch.kernel);
     }
     while (!dispatches.empty()) {
@@ -295,23 +261,23 @@ std::unique_ptr<Device> open_vulkan() {
 }
 
 std::shared_ptr<Device> adopt_vulkan(const VulkanHandles& handles) {
-    VulkanContext given;
-    given.instance = static_cast<VkInstance>(handles.instance);
-    given.physical = static_cast<VkPhysicalDevice>(handles.physical_device);
-    given.device = static_cast<VkDevice>(handles.device);
-    given.queue = static_cast<VkQueue>(handles.queue);
-    given.queue_family = handles.queue_family;
-    if (!given.instance || !given.physical || !given.device || !given.queue) {
+    auto given = std::make_unique<VulkanContext>();
+    given->instance = static_cast<VkInstance>(handles.instance);
+    given->physical = static_cast<VkPhysicalDevice>(handles.physical_device);
+    given->device = static_cast<VkDevice>(handles.device);
+    given->queue = static_cast<VkQueue>(handles.queue);
+    given->queue_family = handles.queue_family;
+    if (!given->instance || !given->physical || !given->device || !given->queue) {
         throw Error(ErrorKind::device,
                     "adopt_vulkan needs an instance, a physical device, a device and a queue, none "
                     "of them null");
     }
-    if (const std::string problem = vulkan_problem(given.physical); !problem.empty()) {
+    if (const std::string problem = vulkan_problem(given->physical); !problem.empty()) {
         throw Error(ErrorKind::device, "adopt_vulkan: the device can't be used: " + problem);
     }
-    if (!family_computes(given.physical, given.queue_family)) {
+    if (!family_computes(given->physical, given->queue_family)) {
         throw Error(ErrorKind::device, "adopt_vulkan: queue family " +
-                                           std::to_string(given.queue_family) +
+                                           std::to_string(given->queue_family) +
                                            " does not compute; give a queue of one that does");
     }
     return std::make_shared<VulkanDevice>(std::move(given));

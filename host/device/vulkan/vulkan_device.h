@@ -10,6 +10,7 @@
 
 #include "device/device.h"
 #include "device/vulkan/vulkan_context.h"
+#include "device/vulkan/vulkan_handle.h"
 
 namespace topple::device {
 
@@ -25,8 +26,8 @@ struct VulkanOptions {
 
 // A VkBuffer with memory of its own. `mapped` is null where the host can't see the memory.
 struct VulkanBuffer {
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VulkanHandle<VkDeviceMemory> memory;
+    VulkanHandle<VkBuffer> buffer;
     std::byte* mapped = nullptr;
 };
 
@@ -34,65 +35,53 @@ class VulkanDevice;
 
 class VulkanMemory final : public Memory {
   public:
-    VulkanMemory(VulkanDevice& device, std::uint64_t bytes, std::string name);
+    VulkanMemory(const VulkanDevice& device, std::uint64_t bytes, const std::string& name);
     // The caller's buffer, which stays theirs.
-    VulkanMemory(VulkanDevice& device, VkBuffer buffer, std::uint64_t bytes, std::string name);
-    ~VulkanMemory() override;
-    VulkanMemory(const VulkanMemory&) = delete;
-    VulkanMemory& operator=(const VulkanMemory&) = delete;
+    VulkanMemory(const VulkanDevice& device, VkBuffer buffer, std::uint64_t bytes,
+                 const std::string& name);
 
-    std::uint64_t bytes() const override { return bytes_; }
-    const std::string& name() const override { return name_; }
-    std::byte* host_address() override { return buffer_.mapped; }
-    VkBuffer buffer() const { return buffer_.buffer; }
-    const VulkanDevice& device() const { return device_; }
+    std::byte* host_address() override { return own_.mapped; }
+    VkBuffer buffer() const { return buffer_; }
 
   private:
-    VulkanDevice& device_;
-    std::uint64_t bytes_;
-    std::string name_;
-    VulkanBuffer buffer_;
-    bool owned_ = true;
+    VulkanBuffer own_;  // or none
+    VkBuffer buffer_;
 };
 
 class VulkanDevice final : public Device {
   public:
-    explicit VulkanDevice(VulkanContext context, const VulkanOptions& options = {});
+    explicit VulkanDevice(std::unique_ptr<VulkanContext> context,
+                          const VulkanOptions& options = {});
     ~VulkanDevice() override;
 
     std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override;
-    void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override;
-    void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) override;
-    void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
-              std::uint32_t word) override;
     void run(std::span<const Dispatch> dispatches) override;
     void prepare(const KernelSource& kernel) override;
 
     // Whether the validation layers watch.
-    bool validates() const { return context_.log != nullptr; }
+    bool validates() const { return context_->log != nullptr; }
 
     // What the kernels' arrays lie in, and what copies to and from them pass through.
     VulkanBuffer create_storage(std::uint64_t bytes, const std::string& name) const;
     VulkanBuffer create_staging(std::uint64_t bytes) const;
-    void destroy(VulkanBuffer& buffer) const;
 
   private:
+    void send(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override;
+    void fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) override;
+    void fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
+                    std::uint32_t word) override;
     struct Built {
-        VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-        VkPipelineLayout layout = VK_NULL_HANDLE;
-        VkPipeline pipeline = VK_NULL_HANDLE;
+        VulkanHandle<VkDescriptorSetLayout> set_layout;
+        VulkanHandle<VkPipelineLayout> layout;
+        VulkanHandle<VkPipeline> pipeline;
     };
-    void create_objects();
-    void release();
     VulkanBuffer create_buffer(std::uint64_t bytes, VkBufferUsageFlags usage,
                                VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred,
                                const std::string& name) const;
     std::int64_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
                              VkMemoryPropertyFlags preferred) const;
-    VulkanMemory& own(Memory& memory) const;
     const Built& kernel(const KernelSource& source);
     Built build(const KernelSource& source) const;
-    void destroy(Built& built) const;
     void reserve_descriptors(std::span<const Dispatch> dispatches);
     VkDescriptorSet describe(const Dispatch& dispatch, const Built& built);
     void record(const Dispatch& dispatch);
@@ -103,15 +92,15 @@ class VulkanDevice final : public Device {
               std::uint64_t bytes, const std::string& what);
     void check_validation(const std::string& what);
 
-    VulkanContext context_;
+    std::unique_ptr<VulkanContext> context_;
     VulkanOptions options_;
     bool unified_ = false;
     std::uint32_t max_groups_ = 0;
     VkPhysicalDeviceMemoryProperties memory_{};
-    VkCommandPool command_pool_ = VK_NULL_HANDLE;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;
-    VkFence fence_ = VK_NULL_HANDLE;
-    VkDescriptorPool descriptor_pool_ = VK_NULL_HANDLE;
+    VulkanHandle<VkCommandPool> command_pool_;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;  // of the pool
+    VulkanHandle<VkFence> fence_;
+    VulkanHandle<VkDescriptorPool> descriptor_pool_;
     std::uint32_t pool_sets_ = 0, pool_descriptors_ = 0;
     VulkanBuffer staging_;
     std::map<const KernelSource*, Built> kernels_;  // looked up only, never iterated for a result

@@ -18,30 +18,17 @@ constexpr std::uint64_t vulkan_tail = 16;
 
 }  // namespace
 
-VulkanMemory::VulkanMemory(VulkanDevice& device, std::uint64_t bytes, std::string name)
-    : device_(device),
-      bytes_(bytes),
-      name_(std::move(name)),
-      buffer_(device.create_storage(bytes + vulkan_tail, name_)) {}
+VulkanMemory::VulkanMemory(const VulkanDevice& device, std::uint64_t bytes, const std::string& name)
+    : Memory(device, bytes, name),
+      own_(device.create_storage(bytes + vulkan_tail, name)),
+      buffer_(own_.buffer.get()) {}
 
-VulkanMemory::VulkanMemory(VulkanDevice& device, VkBuffer buffer, std::uint64_t bytes,
-                           std::string name)
-    : device_(device), bytes_(bytes), name_(std::move(name)), owned_(false) {
-    buffer_.buffer = buffer;
-}
-
-VulkanMemory::~VulkanMemory() {
-    if (owned_) device_.destroy(buffer_);
-}
+VulkanMemory::VulkanMemory(const VulkanDevice& device, VkBuffer buffer, std::uint64_t bytes,
+                           const std::string& name)
+    : Memory(device, bytes, name), buffer_(buffer) {}
 
 std::unique_ptr<Memory> VulkanDevice::allocate(std::uint64_t bytes, const std::string& name) {
-    if (bytes > info_.limits.max_allocation_bytes) {
-        throw Error(
-            ErrorKind::device,
-            "buffer " + name + ": " + std::to_string(bytes) + " bytes are more than the " +
-                std::to_string(info_.limits.max_allocation_bytes) + " that " + info_.name +
-                " allocates at once; use a larger ParseOptions::voxel_m, or the native backend");
-    }
+    check_allocation(bytes, name);
     return std::make_unique<VulkanMemory>(*this, bytes, name);
 }
 
@@ -76,47 +63,27 @@ VulkanBuffer VulkanDevice::create_buffer(std::uint64_t bytes, VkBufferUsageFlags
                                          const std::string& name) const {
     const std::string what =
         "buffer " + name + " of " + std::to_string(bytes) + " bytes on " + info_.name;
+    const VkDevice device = context_->device;
     VulkanBuffer made;
-    try {
-        auto info = vk_struct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
-        info.size = bytes;
-        info.usage = usage;
-        vk_check(vkCreateBuffer(context_.device, &info, nullptr, &made.buffer), what);
-        VkMemoryRequirements needs;
-        vkGetBufferMemoryRequirements(context_.device, made.buffer, &needs);
-        const std::int64_t type = memory_type(needs.memoryTypeBits, required, preferred);
-        if (type < 0) throw Error(ErrorKind::device, what + ": no fitting kind of memory");
-        auto allocation = vk_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        allocation.allocationSize = needs.size;
-        allocation.memoryTypeIndex = static_cast<std::uint32_t>(type);
-        vk_check(vkAllocateMemory(context_.device, &allocation, nullptr, &made.memory), what);
-        vk_check(vkBindBufferMemory(context_.device, made.buffer, made.memory, 0), what);
-        if (required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
-            void* address = nullptr;
-            vk_check(vkMapMemory(context_.device, made.memory, 0, VK_WHOLE_SIZE, 0, &address),
-                     what);
-            made.mapped = static_cast<std::byte*>(address);
-        }
-    } catch (const Error&) {
-        destroy(made);
-        throw;
+    auto info = vk_struct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+    info.size = bytes;
+    info.usage = usage;
+    made.buffer = vk_make(device, vkCreateBuffer, vkDestroyBuffer, info, what);
+    VkMemoryRequirements needs;
+    vkGetBufferMemoryRequirements(device, made.buffer.get(), &needs);
+    const std::int64_t type = memory_type(needs.memoryTypeBits, required, preferred);
+    if (type < 0) throw Error(ErrorKind::device, what + ": no fitting kind of memory");
+    auto allocation = vk_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    allocation.allocationSize = needs.size;
+    allocation.memoryTypeIndex = static_cast<std::uint32_t>(type);
+    made.memory = vk_make(device, vkAllocateMemory, vkFreeMemory, allocation, what);
+    vk_check(vkBindBufferMemory(device, made.buffer.get(), made.memory.get(), 0), what);
+    if (required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
+        void* address = nullptr;
+        vk_check(vkMapMemory(device, made.memory.get(), 0, VK_WHOLE_SIZE, 0, &address), what);
+        made.mapped = static_cast<std::byte*>(address);
     }
     return made;
-}
-
-void VulkanDevice::destroy(VulkanBuffer& buffer) const {
-    if (buffer.buffer) vkDestroyBuffer(context_.device, buffer.buffer, nullptr);
-    if (buffer.memory) vkFreeMemory(context_.device, buffer.memory, nullptr);  // unmaps too
-    buffer = {};
-}
-
-VulkanMemory& VulkanDevice::own(Memory& memory) const {
-    auto* mine = dynamic_cast<VulkanMemory*>(&memory);
-    if (!mine || &mine->device() != this) {
-        throw Error(ErrorKind::device,
-                    "buffer " + memory.name() + " belongs to another device than " + info_.name);
-    }
-    return *mine;
 }
 
 void VulkanDevice::copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to,
@@ -127,48 +94,30 @@ void VulkanDevice::copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to,
     submit(what);
 }
 
-void VulkanDevice::write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
-    VulkanMemory& memory = own(to);
-    if (std::byte* address = memory.host_address()) {
-        std::memcpy(address + offset, from.data(), from.size());
-    } else {
-        for (std::uint64_t done = 0; done < from.size(); done += options_.staging_bytes) {
-            const std::uint64_t piece =
-                std::min<std::uint64_t>(options_.staging_bytes, from.size() - done);
-            std::memcpy(staging_.mapped, from.data() + done, piece);
-            copy(staging_.buffer, 0, memory.buffer(), offset + done, piece,
-                 "writing buffer " + memory.name());
-        }
+void VulkanDevice::send(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
+    for (std::uint64_t done = 0; done < from.size(); done += options_.staging_bytes) {
+        const std::uint64_t piece =
+            std::min<std::uint64_t>(options_.staging_bytes, from.size() - done);
+        std::memcpy(staging_.mapped, from.data() + done, piece);
+        copy(staging_.buffer.get(), 0, own<VulkanMemory>(to).buffer(), offset + done, piece,
+             "writing buffer " + to.name());
     }
-    counters_.bytes_written += from.size();
 }
 
-void VulkanDevice::read(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
-    VulkanMemory& memory = own(from);
-    if (const std::byte* address = memory.host_address()) {
-        std::memcpy(to.data(), address + offset, to.size());
-    } else {
-        for (std::uint64_t done = 0; done < to.size(); done += options_.staging_bytes) {
-            const std::uint64_t piece =
-                std::min<std::uint64_t>(options_.staging_bytes, to.size() - done);
-            copy(memory.buffer(), offset + done, staging_.buffer, 0, piece,
-                 "reading buffer " + memory.name());
-            std::memcpy(to.data() + done, staging_.mapped, piece);
-        }
+void VulkanDevice::fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
+    for (std::uint64_t done = 0; done < to.size(); done += options_.staging_bytes) {
+        const std::uint64_t piece =
+            std::min<std::uint64_t>(options_.staging_bytes, to.size() - done);
+        copy(own<VulkanMemory>(from).buffer(), offset + done, staging_.buffer.get(), 0, piece,
+             "reading buffer " + from.name());
+        std::memcpy(to.data() + done, staging_.mapped, piece);
     }
-    counters_.bytes_read += to.size();
 }
 
-void VulkanDevice::fill(Memory& target, std::uint64_t offset, std::uint64_t bytes,
-                        std::uint32_t word) {
-    VulkanMemory& memory = own(target);
-    if (std::byte* address = memory.host_address()) {
-        auto* first = reinterpret_cast<std::uint32_t*>(address + offset);
-        std::fill(first, first + bytes / sizeof(word), word);
-        return;
-    }
+void VulkanDevice::fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
+                              std::uint32_t word) {
     begin();
-    vkCmdFillBuffer(commands_, memory.buffer(), offset, bytes, word);
+    vkCmdFillBuffer(commands_, own<VulkanMemory>(memory).buffer(), offset, bytes, word);
     submit("filling buffer " + memory.name());
 }
 

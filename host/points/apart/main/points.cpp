@@ -8,7 +8,7 @@
 
 #include "child/confine.h"
 #include "child/process.h"
-#include "device/listing_message.h"
+#include "device/probe.h"
 #include "io/text.h"
 #include "points/apart/read_scan.h"
 #include "points/apart/scan_message.h"
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
             return reader::read_points(file, unit_m, [] {});
         });
     } else if (task.size() == 2 && task[0] == "devices") {
-        device::write_listings(device::list_backend(task[1]));
+        device::answer_probe(task[1]);
     } else {
         std::fprintf(stderr, "topple-reader %s belongs to topple, which runs it\n", version);
         return 2;
