@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace topple {
@@ -18,6 +20,20 @@ enum class Basis : std::uint8_t {
 inline constexpr std::uint8_t basis_count = 7;
 
 // How probable it is that such a voxel is solid indeed, to within half of its diagonal.
-double probability_solid(Basis basis);
+// Shares of the voxels of eight furnished rooms, four of them varied, 2.07 million in all, that lie
+// in a part or within half their diagonal of one:
+//   topple evaluate --bases --seeds 4 --first 1001 [--furniture varied]
+inline double probability_solid(Basis basis) {
+    constexpr std::array<double, basis_count> share{
+        0.965,  // surface
+        0.977,  // three_votes
+        0.896,  // two_votes
+        0.645,  // column
+        0.627,  // stand
+        0.752,  // leg
+        0.705,  // gap
+    };
+    return share[static_cast<std::size_t>(basis)];
+}
 
 }  // namespace topple

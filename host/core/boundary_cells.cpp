@@ -56,10 +56,8 @@ std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t v
 bool BoundaryCells::fits(std::size_t primitives) const {
     // Of patches: what follows from such numbers is finite.
     constexpr double most = 1e12;
-    bool right = j.size() == size() && k.size() == size() && primitive.size() == size() &&
-                 form.size() == size() && share.size() == size();
-    for (const auto& patch : slot) right = right && patch.size() == size();
-    for (const auto& along : moment) right = right && along.size() == size();
+    bool right = true;
+    each_array([&](const auto& array) { right = right && array.size() == size(); }, *this);
     const auto is_primitive = [&](std::int32_t p) {
         return p >= 0 && static_cast<std::size_t>(p) < primitives;
     };
@@ -82,18 +80,12 @@ bool BoundaryCells::fits(std::size_t primitives) const {
 BoundaryCells BoundaryCells::only(const std::vector<bool>& kept) const {
     BoundaryCells out;
     out.patches = patches;
-    const auto pick = [&](const auto& from, auto& to) {
-        for (std::size_t n = 0; n < from.size(); ++n)
-            if (kept[n]) to.push_back(from[n]);
-    };
-    pick(i, out.i);
-    pick(j, out.j);
-    pick(k, out.k);
-    pick(primitive, out.primitive);
-    for (std::size_t s = 0; s < slots; ++s) pick(slot[s], out.slot[s]);
-    pick(form, out.form);
-    pick(share, out.share);
-    for (std::size_t a = 0; a < 3; ++a) pick(moment[a], out.moment[a]);
+    each_array(
+        [&](const auto& from, auto& to) {
+            for (std::size_t n = 0; n < from.size(); ++n)
+                if (kept[n]) to.push_back(from[n]);
+        },
+        *this, out);
     return out;
 }
 

@@ -73,6 +73,18 @@ struct BoundaryCells {
     std::array<std::vector<std::int32_t>, 3> moment;
 
     std::size_t size() const { return i.size(); }
+    // visit(array...) for each array that has a value for each voxel, the same one of all of these.
+    template <class Visit, class... Cells>
+    static void each_array(const Visit& visit, Cells&... of) {
+        visit(of.i...);
+        visit(of.j...);
+        visit(of.k...);
+        visit(of.primitive...);
+        for (std::size_t s = 0; s < slots; ++s) visit(of.slot[s]...);
+        visit(of.form...);
+        visit(of.share...);
+        for (std::size_t a = 0; a < 3; ++a) visit(of.moment[a]...);
+    }
     std::uint32_t slots_used(std::size_t n) const { return form[n] & 7; }
     // Whether one group suffices for being solid and all members of it must agree; else all groups
     // must agree, and one member of each suffices. Of a voxel without slots nothing or all is

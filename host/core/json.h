@@ -19,12 +19,11 @@ namespace topple {
 template <class T, class = void>
 struct JsonSerializer : nlohmann::adl_serializer<T> {};
 
-using Json = nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t,
-                                  std::uint64_t, double, std::allocator, JsonSerializer>;
-// Its objects keep the order in which they are made.
-using OrderedJson =
-    nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t,
-                         std::uint64_t, double, std::allocator, JsonSerializer>;
+template <template <class, class, class...> class Map>
+using BasicJson = nlohmann::basic_json<Map, std::vector, std::string, bool, std::int64_t,
+                                       std::uint64_t, double, std::allocator, JsonSerializer>;
+using Json = BasicJson<std::map>;
+using OrderedJson = BasicJson<nlohmann::ordered_map>;  // objects keep the order they are made in
 
 // What the system gives, else a part of the reserve; throws std::bad_alloc where that is used up.
 void* allocate_json(std::size_t bytes);
@@ -49,16 +48,9 @@ struct JsonAllocator {
 }  // namespace topple
 
 // The destructor's stack has the standard's allocator, whatever the values' is.
-template <>
-class std::allocator<topple::Json> : public topple::JsonAllocator<topple::Json> {
-  public:
-    allocator() = default;
-    template <class Other>
-    allocator(const std::allocator<Other>&) noexcept {}
-    bool operator==(const allocator&) const = default;
-};
-template <>
-class std::allocator<topple::OrderedJson> : public topple::JsonAllocator<topple::OrderedJson> {
+template <template <class, class, class...> class Map>
+class std::allocator<topple::BasicJson<Map>>
+    : public topple::JsonAllocator<topple::BasicJson<Map>> {
   public:
     allocator() = default;
     template <class Other>

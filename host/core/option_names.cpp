@@ -58,30 +58,12 @@ constexpr auto names = std::to_array<OptionName>({
     {"ExportOptions::threads", "--threads", none, "threads"},
 });
 
-const char* name_in(Interface interface, const OptionName& name) {
-    switch (interface) {
-        case Interface::command_line:
-            return name.command_line;
-        case Interface::c:
-            return name.c;
-        case Interface::python:
-            return name.python;
-    }
-    return none;
-}
-
-// What stands between an option and its value.
-std::string_view assigns(Interface interface) {
-    switch (interface) {
-        case Interface::command_line:
-            return " ";
-        case Interface::c:
-            return " = ";
-        case Interface::python:
-            return "=";
-    }
-    return " = ";
-}
+// By interface: what it has for an option, and what stands between that and a value.
+constexpr struct {
+    const char* OptionName::*name;
+    std::string_view assigns;
+} interfaces[] = {
+    {&OptionName::command_line, " "}, {&OptionName::c, " = "}, {&OptionName::python, "="}};
 
 struct Replacement {
     std::string from, to;
@@ -90,7 +72,8 @@ struct Replacement {
 std::vector<Replacement> replacements(Interface interface) {
     std::vector<Replacement> out;
     for (const OptionName& name : names)
-        if (const char* to = name_in(interface, name)) out.push_back({name.member, to});
+        if (const char* to = name.*interfaces[static_cast<std::size_t>(interface)].name)
+            out.push_back({name.member, to});
     if (interface == Interface::python)
         for (const auto& [words, numpy] : pose_mends::all)
             out.push_back({words, std::string(words).append(" (").append(numpy).append(")")});
@@ -132,7 +115,7 @@ std::string in_words_of(Interface interface, std::string_view message) {
         out += found->to;
         at += found->from.size();
         if (!message.substr(at).starts_with(assignment)) continue;
-        out += assigns(interface);
+        out += interfaces[static_cast<std::size_t>(interface)].assigns;
         at += assignment.size();
     }
     return out;

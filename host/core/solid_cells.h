@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +28,20 @@ struct SolidCells {
         k.push_back(at[2]);
         primitive.push_back(of);
         basis.push_back(why);
+    }
+    // visit(array...) for each array that has a value for each cell, the same one of all of these.
+    template <class Visit, class... Cells>
+    static void each_array(const Visit& visit, Cells&... of) {
+        visit(of.i...);
+        visit(of.j...);
+        visit(of.k...);
+        visit(of.primitive...);
+        visit(of.basis...);
+    }
+    // Appends cell n of others, as one of that primitive.
+    void add(const SolidCells& from, std::size_t n, std::int32_t as) {
+        add(place_of(from, n), as, from.basis[n]);
+        if (!from.unseen_below.empty()) unseen_below.push_back(from.unseen_below[n]);
     }
 };
 

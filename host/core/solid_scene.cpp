@@ -14,9 +14,9 @@ namespace {
 
 void check(const SolidCells& cells, std::size_t primitives) {
     const std::size_t count = cells.size();
-    const bool whole = cells.j.size() == count && cells.k.size() == count &&
-                       cells.primitive.size() == count && cells.basis.size() == count &&
-                       (cells.unseen_below.empty() || cells.unseen_below.size() == count);
+    bool whole = cells.unseen_below.empty() || cells.unseen_below.size() == count;
+    SolidCells::each_array([&](const auto& array) { whole = whole && array.size() == count; },
+                           cells);
     if (!whole) refuse("arrays of cells that differ in length");
     for (std::size_t n = 0; n < count; ++n) {
         if (n > 0 && place_of(cells, n) <= place_of(cells, n - 1))
@@ -28,10 +28,6 @@ void check(const SolidCells& cells, std::size_t primitives) {
         if (static_cast<std::uint8_t>(cells.basis[n]) >= basis_count)
             refuse("cell " + std::to_string(n) + " is solid for no reason that there is");
     }
-}
-
-void add(const SolidCells& from, std::size_t n, SolidCells& to) {
-    to.add(place_of(from, n), from.primitive[n], from.basis[n]);
 }
 
 }  // namespace
@@ -51,19 +47,15 @@ SolidScene::SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells str
 
 SolidCells SolidScene::with_strays() const {
     SolidCells out;
-    if (strays_.size() == 0) {
-        out = cells_;
-        out.unseen_below.clear();
-        return out;
-    }
     out.voxel_m = cells_.voxel_m;
     std::size_t stray = 0;
     for (std::size_t n = 0; n < cells_.size(); ++n) {
         for (; stray < strays_.size() && place_of(strays_, stray) < place_of(cells_, n); ++stray)
-            add(strays_, stray, out);
-        add(cells_, n, out);
+            out.add(strays_, stray, -1);
+        out.add(cells_, n, cells_.primitive[n]);
     }
-    for (; stray < strays_.size(); ++stray) add(strays_, stray, out);
+    for (; stray < strays_.size(); ++stray) out.add(strays_, stray, -1);
+    out.unseen_below.clear();
     return out;
 }
 

@@ -13,18 +13,17 @@ namespace topple {
 // (i, j, k).
 template <class Visit>
 void each_touching(const SolidCells& cells, const Visit& visit) {
-    const auto place = [&](std::size_t n) { return place_of(cells, n); };
     constexpr std::array<std::array<std::int32_t, 2>, 4> rows{
         {{0, -1}, {-1, -1}, {-1, 0}, {-1, 1}}};
     std::array<std::size_t, 4> first{};
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        const Place at = place(n);
-        if (n > 0 && place(n - 1) == Place{at[0], at[1], at[2] - 1}) visit(n - 1, n);
+        const Place at = place_of(cells, n);
+        if (n > 0 && place_of(cells, n - 1) == Place{at[0], at[1], at[2] - 1}) visit(n - 1, n);
         for (std::size_t r = 0; r < rows.size(); ++r) {
             const Place low{at[0] + rows[r][0], at[1] + rows[r][1], at[2] - 1};
-            while (first[r] < n && place(first[r]) < low) ++first[r];
+            while (first[r] < n && place_of(cells, first[r]) < low) ++first[r];
             for (std::size_t m = first[r]; m < n; ++m) {
-                const Place other = place(m);
+                const Place other = place_of(cells, m);
                 if (other[0] != low[0] || other[1] != low[1] || other[2] > low[2] + 2) break;
                 visit(m, n);
             }

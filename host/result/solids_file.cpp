@@ -62,20 +62,10 @@ std::vector<SurfacePatch> patches_of(const FlatPatches& flat) {
 // All arrays in their order in the file: visit(array, how many).
 template <class Solids, class Patches, class Visit>
 void each_array(Solids& solids, Patches& patches, const Head& head, const Visit& visit) {
-    const auto visit_cells = [&](auto& cells, std::uint64_t count) {
-        for (auto* array : {&cells.i, &cells.j, &cells.k, &cells.primitive}) visit(*array, count);
-        visit(cells.basis, count);
-    };
-    visit_cells(solids.cells, head.cells);
+    SolidCells::each_array([&](auto& array) { visit(array, head.cells); }, solids.cells);
     visit(solids.cells.unseen_below, head.below);
-    visit_cells(solids.strays, head.strays);
-    auto& boundary = solids.boundary;
-    for (auto* array : {&boundary.i, &boundary.j, &boundary.k, &boundary.primitive})
-        visit(*array, head.boundary);
-    for (auto& slot : boundary.slot) visit(slot, head.boundary);
-    visit(boundary.form, head.boundary);
-    visit(boundary.share, head.boundary);
-    for (auto& moment : boundary.moment) visit(moment, head.boundary);
+    SolidCells::each_array([&](auto& array) { visit(array, head.strays); }, solids.strays);
+    BoundaryCells::each_array([&](auto& array) { visit(array, head.boundary); }, solids.boundary);
     visit(patches.form, head.patches);
     visit(patches.primitive, head.patches);
     visit(solids.roles, head.primitives);

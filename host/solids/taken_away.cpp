@@ -43,8 +43,7 @@ TakenAway take_away(const SolidScene& solids, const std::vector<bool>& kept) {
             out.changed.push_back({at, now});
             if (now < 0) continue;
         }
-        cells.add(at, now, from.basis[n]);
-        if (!from.unseen_below.empty()) cells.unseen_below.push_back(from.unseen_below[n]);
+        cells.add(from, n, now);
     }
     std::vector<bool> left;
     for (const std::int32_t p : solids.boundary().primitive) left.push_back(number(p) >= 0);

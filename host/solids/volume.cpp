@@ -154,9 +154,7 @@ Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
     out.near.voxel_m = out.strays.voxel_m = cells.voxel_m;
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
-        SolidCells& to = in_bounds ? out.near : out.strays;
-        to.add(place_of(cells, n), cells.primitive[n], cells.basis[n]);
-        to.unseen_below.push_back(cells.unseen_below[n]);
+        (in_bounds ? out.near : out.strays).add(cells, n, cells.primitive[n]);
     }
     return out;
 }

@@ -9,7 +9,7 @@
 #include "core/solid_scene.h"
 #include "lab/solids/scene.h"
 
-// How often what a rule takes to be solid is solid: what core/basis.cpp has its probabilities from.
+// How often what a rule takes to be solid is solid: what core/basis.h has its probabilities from.
 namespace topple::evaluation {
 
 struct BasisCounts {
