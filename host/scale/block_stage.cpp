@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "core/field_rules.h"
@@ -40,7 +39,7 @@ void add_labels(const tiles::BlockPoints& points, const std::vector<std::int32_t
 void add_states(const vdb::VoxelScene& scene, const tiles::VoxelBox& core, BlockParts& out) {
     vdb::Tiles all = scene.tiles(true), inside;
     for (std::size_t n = 0; n < all.size(); ++n) {
-        if (!core.holds(all.x[n], all.y[n], all.z[n])) continue;
+        if (!core.holds({all.x[n], all.y[n], all.z[n]})) continue;
         inside.x.push_back(all.x[n]);
         inside.y.push_back(all.y[n]);
         inside.z.push_back(all.z[n]);
@@ -134,8 +133,7 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     out.cells = voxels.solids->cells();
     const geometry::Surfels& s = geometry.surfels;
     out.seams = surface_seams(geometry, voxels.number, [&](std::size_t n) {
-        const auto at = tiles::voxel_at(layout.frame, layout.voxel_m, s.x[n], s.y[n], s.z[n]);
-        return block.core.holds(at[0], at[1], at[2]);
+        return block.core.holds(layout.voxel_at(s.x[n], s.y[n], s.z[n]));
     });
     const geometry::SurfaceSamples all = numbered(geometry.samples, voxels.number);
     out.samples = geometry::samples_where(all, [&](std::size_t n) {
@@ -143,7 +141,7 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
             return static_cast<std::int32_t>(std::floor(v / layout.voxel_m));
         };
         return all.primitive[n] >= 0 &&
-               block.core.holds(voxel(all.x[n]), voxel(all.y[n]), voxel(all.z[n]));
+               block.core.holds({voxel(all.x[n]), voxel(all.y[n]), voxel(all.z[n])});
     });
     add_states(*voxels.scene, block.core, out);
     add_labels(points, numbered(geometry.primitive_of_point, voxels.number), out);
@@ -174,10 +172,8 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     try {
         tiles::BinaryReader in(block_file(folder, block));
         block_fields(in, out, seams);
-        const SolidCells& c = out.cells;
-        for (std::size_t n = 1; n < c.size(); ++n)
-            in.expect(std::tie(c.i[n - 1], c.j[n - 1], c.k[n - 1]) <
-                      std::tie(c.i[n], c.j[n], c.k[n]));
+        for (std::size_t n = 1; n < out.cells.size(); ++n)
+            in.expect(place_of(out.cells, n - 1) < place_of(out.cells, n));
     } catch (const Error&) {
         // What its checksum does not tell no later run would find before it is here.
         std::error_code error;

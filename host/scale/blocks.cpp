@@ -90,7 +90,7 @@ struct Place {
           high{at[0] + edge, at[1] + edge},
           from{high[0], high[1]},
           to{low[0], low[1]} {}
-    void add(const std::array<std::int32_t, 3>& voxel) {
+    void add(const Voxel& voxel) {
         for (std::size_t a = 0; a < 2; ++a) {
             from[a] = std::min(from[a], voxel[a]);
             to[a] = std::max(to[a], voxel[a] + 1);
@@ -143,17 +143,6 @@ void join_rims(std::int32_t halo, std::vector<Place>& places) {
 
 }  // namespace
 
-std::array<std::int32_t, 3> voxel_at(const geometry::SceneFrame& frame, double voxel_m, float x,
-                                     float y, float z) {
-    std::array<std::int32_t, 3> at{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const Vec3& axis = frame.axes[a];
-        at[a] = static_cast<std::int32_t>(
-            std::floor((axis[0] * x + axis[1] * y + axis[2] * z) / voxel_m));
-    }
-    return at;
-}
-
 Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
                        const geometry::SceneFrame& frame, double cell_m, double voxel_m) {
     constexpr std::int32_t far = 1 << 26;  // beyond all voxels, with room for a halo
@@ -171,7 +160,7 @@ Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
     for (const Bin& bin : bins) {
         const ThinnedBin points = read_thinned(folder, bin);
         for (std::size_t n = 0; n < points.size(); ++n) {
-            const auto at = voxel_at(frame, voxel_m, points.x[n], points.y[n], points.z[n]);
+            const Voxel at = out.voxel_at(points.x[n], points.y[n], points.z[n]);
             const auto above = std::ranges::upper_bound(cuts, at[2], {}, &SlabCut::at);
             const auto storey = static_cast<std::int32_t>(above - cuts.begin() - 1);
             const std::array<std::int32_t, 3> low{storey, floored(at[0], edge),
@@ -260,24 +249,16 @@ BlockPoints TileReader::next() {
     BlockPoints out;
     for (std::size_t b = 0; b < bins_.size(); ++b) {
         if (!sees(number, b)) continue;
-        auto at = held_.find(b);
-        if (at == held_.end()) at = held_.emplace(b, read_thinned(folder_, bins_[b])).first;
-        const ThinnedBin& points = at->second;
+        auto held = held_.find(b);
+        if (held == held_.end()) held = held_.emplace(b, read_thinned(folder_, bins_[b])).first;
+        const ThinnedBin& points = held->second;
         BlockPoints::Part part{b, {}, {}};
         for (std::size_t n = 0; n < points.size(); ++n) {
-            const auto cell =
-                voxel_at(layout_.frame, layout_.voxel_m, points.x[n], points.y[n], points.z[n]);
-            if (!seen.holds(cell[0], cell[1], cell[2])) continue;
-            out.cloud.x.push_back(points.x[n]);
-            out.cloud.y.push_back(points.y[n]);
-            out.cloud.z.push_back(points.z[n]);
-            if (!points.red.empty()) {
-                out.cloud.red.push_back(points.red[n]);
-                out.cloud.green.push_back(points.green[n]);
-                out.cloud.blue.push_back(points.blue[n]);
-            }
+            const Voxel at = layout_.voxel_at(points.x[n], points.y[n], points.z[n]);
+            if (!seen.holds(at)) continue;
+            add_cell(points, n, out.cloud);
             part.cells.push_back(static_cast<std::uint32_t>(n));
-            part.in_core.push_back(block.core.holds(cell[0], cell[1], cell[2]));
+            part.in_core.push_back(block.core.holds(at));
         }
         if (!part.cells.empty()) out.parts.push_back(std::move(part));
     }

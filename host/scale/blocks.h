@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,12 +17,24 @@
 
 namespace topple::tiles {
 
+using Voxel = std::array<std::int32_t, 3>;
+
 // A box of voxels in the grid frame: [low, high) per axis.
 struct VoxelBox {
-    std::array<std::int32_t, 3> low{}, high{};
-    bool holds(std::int32_t i, std::int32_t j, std::int32_t k) const {
-        return i >= low[0] && i < high[0] && j >= low[1] && j < high[1] && k >= low[2] &&
-               k < high[2];
+    Voxel low{}, high{};
+    bool holds(const Voxel& at) const {
+        for (std::size_t a = 0; a < 3; ++a)
+            if (at[a] < low[a] || at[a] >= high[a]) return false;
+        return true;
+    }
+    bool empty() const { return low[0] >= high[0] || low[1] >= high[1] || low[2] >= high[2]; }
+    VoxelBox common(const VoxelBox& other) const {
+        VoxelBox out;
+        for (std::size_t a = 0; a < 3; ++a) {
+            out.low[a] = std::max(low[a], other.low[a]);
+            out.high[a] = std::min(high[a], other.high[a]);
+        }
+        return out;
     }
     VoxelBox grown(std::int32_t by) const {
         VoxelBox out = *this;
@@ -48,6 +62,17 @@ struct Layout {
     std::int32_t halo = 0;  // voxels
     geometry::SceneFrame frame;
     std::vector<Block> blocks;  // by (storey, i, j)
+
+    // That in which a point of the input's frame lies.
+    Voxel voxel_at(float x, float y, float z) const {
+        Voxel at{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Vec3& axis = frame.axes[a];
+            at[a] = static_cast<std::int32_t>(
+                std::floor((axis[0] * x + axis[1] * y + axis[2] * z) / voxel_m));
+        }
+        return at;
+    }
 };
 
 inline std::uint64_t largest_block(const Layout& layout) {
@@ -72,10 +97,6 @@ std::vector<std::vector<std::size_t>> tiles_of(const Layout& layout, double tile
 inline constexpr const char* layout_name = "layout.bin";
 void write_layout(const std::filesystem::path& folder, const Layout& layout);
 Layout read_layout(const std::filesystem::path& folder);
-
-// The voxel of a point.
-std::array<std::int32_t, 3> voxel_at(const geometry::SceneFrame& frame, double voxel_m, float x,
-                                     float y, float z);
 
 // The thinned points that a block sees, and which of their bins' cells they are.
 struct BlockPoints {

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/pending/disjoint_sets.hpp>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <span>
 #include <utility>
 
-#include "core/sorted_order.h"
-#include "geometry/cell_grid.h"
+#include "core/union_find.h"
 #include "scale/block_stage.h"
 
 namespace topple {
@@ -32,26 +30,11 @@ tiles::VoxelBox compared(const tiles::Block& block) {
 constexpr std::uint64_t least_shared = 6;
 constexpr double least_share = 0.5;
 
-using Sets = boost::disjoint_sets_with_storage<>;
-
-// A primitive of a block.
-struct Member {
-    std::size_t block = 0;
-    std::int32_t primitive = -1;
-};
-
 // What is kept of a block while its neighbours are read: its voxels near its border.
 struct Border {
-    std::vector<std::array<std::int32_t, 3>> at;  // ascending
+    std::vector<tiles::Voxel> at;  // ascending
     std::vector<std::int32_t> primitive;
 };
-
-bool meet(const tiles::VoxelBox& a, const tiles::VoxelBox& b) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (a.low[axis] >= b.high[axis] || b.low[axis] >= a.high[axis]) return false;
-    }
-    return true;
-}
 
 // halo: of the layout, which no neighbour sees further than.
 Border border_of(const BlockParts& parts, const tiles::Block& block, std::int32_t halo) {
@@ -59,10 +42,9 @@ Border border_of(const BlockParts& parts, const tiles::Block& block, std::int32_
     Border out;
     const SolidCells& c = parts.cells;
     for (std::size_t n = 0; n < c.size(); ++n) {
-        if (c.primitive[n] < 0 || !outer.holds(c.i[n], c.j[n], c.k[n]) ||
-            inner.holds(c.i[n], c.j[n], c.k[n]))
-            continue;
-        out.at.push_back({c.i[n], c.j[n], c.k[n]});
+        const tiles::Voxel at = place_of(c, n);
+        if (c.primitive[n] < 0 || !outer.holds(at) || inner.holds(at)) continue;
+        out.at.push_back(at);
         out.primitive.push_back(c.primitive[n]);
     }
     return out;
@@ -74,10 +56,10 @@ std::vector<std::pair<std::int32_t, std::int32_t>> matches(const Border& a, cons
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> shared;
     std::map<std::int32_t, std::uint64_t> of_a, of_b;
     for (std::size_t n = 0; n < a.at.size(); ++n)
-        if (region.holds(a.at[n][0], a.at[n][1], a.at[n][2])) ++of_a[a.primitive[n]];
+        if (region.holds(a.at[n])) ++of_a[a.primitive[n]];
     std::size_t m = 0;
     for (std::size_t n = 0; n < b.at.size(); ++n) {
-        if (!region.holds(b.at[n][0], b.at[n][1], b.at[n][2])) continue;
+        if (!region.holds(b.at[n])) continue;
         ++of_b[b.primitive[n]];
         while (m < a.at.size() && a.at[m] < b.at[n]) ++m;
         if (m < a.at.size() && a.at[m] == b.at[n]) ++shared[{a.primitive[m], b.primitive[n]}];
@@ -85,13 +67,14 @@ std::vector<std::pair<std::int32_t, std::int32_t>> matches(const Border& a, cons
     struct Best {
         std::int32_t other = -1;
         std::uint64_t count = 0;
+        void take(std::int32_t by, std::uint64_t many) {
+            if (many > count) *this = {by, many};
+        }
     };
     std::map<std::int32_t, Best> best_of_a, best_of_b;
     for (const auto& [pair, count] : shared) {
-        Best& p = best_of_a[pair.first];
-        if (count > p.count) p = {pair.second, count};
-        Best& q = best_of_b[pair.second];
-        if (count > q.count) q = {pair.first, count};
+        best_of_a[pair.first].take(pair.second, count);
+        best_of_b[pair.second].take(pair.first, count);
     }
     std::vector<std::pair<std::int32_t, std::int32_t>> out;
     for (const auto& [p, best] : best_of_a) {
@@ -111,37 +94,26 @@ const char* model_named(char initial) {
 // what sorting takes beside them is little.
 void sort_cells(SolidCells& cells) {
     if (cells.size() == 0) return;
-    const auto range_of = [](const std::vector<std::int32_t>& values) {
-        const auto [least, most] = std::ranges::minmax(values);
-        return std::pair<std::int64_t, std::int64_t>(least, most);
+    const auto [low, high] = std::ranges::minmax(cells.i);
+    std::vector<std::size_t> first(static_cast<std::size_t>(std::int64_t{high} - low) + 2, 0);
+    const auto slice = [low = low](std::int32_t i) {
+        return static_cast<std::size_t>(std::int64_t{i} - low);
     };
-    const auto [low_i, high_i] = range_of(cells.i);
-    const auto [low_j, high_j] = range_of(cells.j);
-    const auto [low_k, high_k] = range_of(cells.k);
-    const geometry::CellPacking packing({0, low_j, low_k}, {0, high_j, high_k});
-    std::vector<std::size_t> first(static_cast<std::size_t>(high_i - low_i) + 2, 0);
-    const auto slice = [low = low_i](std::int32_t i) { return static_cast<std::size_t>(i - low); };
     for (const std::int32_t i : cells.i) ++first[slice(i) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<std::uint32_t> order(cells.size());
     auto next = first;
     for (std::size_t n = 0; n < cells.size(); ++n)
         order[next[slice(cells.i[n])]++] = static_cast<std::uint32_t>(n);
-    for (std::size_t s = 0; s + 1 < first.size(); ++s) {
-        const std::span<std::uint32_t> of_slice(order.data() + first[s], first[s + 1] - first[s]);
-        std::vector<std::uint64_t> keys;
-        for (const std::uint32_t n : of_slice) keys.push_back(packing(0, cells.j[n], cells.k[n]));
-        const std::vector<std::uint32_t> was(of_slice.begin(), of_slice.end());
-        const std::vector<std::uint32_t> sorted = sorted_order(keys);
-        for (std::size_t n = 0; n < sorted.size(); ++n) of_slice[n] = was[sorted[n]];
-    }
+    for (std::size_t s = 0; s + 1 < first.size(); ++s)
+        std::ranges::sort(std::span(order).subspan(first[s], first[s + 1] - first[s]), {},
+                          [&](std::uint32_t n) { return std::pair(cells.j[n], cells.k[n]); });
     const auto sort = [&](auto& values) {
         auto sorted = values;
         for (std::size_t n = 0; n < order.size(); ++n) sorted[n] = values[order[n]];
         values = std::move(sorted);
     };
-    for (auto* values : {&cells.i, &cells.j, &cells.k, &cells.primitive}) sort(*values);
-    sort(cells.basis);
+    SolidCells::each_array(sort, cells);
     sort(cells.unseen_below);
 }
 
@@ -153,69 +125,58 @@ class Joiner {
     JoinedBlocks join(StageClock& stage) {
         const std::size_t blocks = layout_.blocks.size();
         std::vector<Border> border(blocks);
-        // Voxels of each primitive in its block's core.
-        std::vector<std::vector<std::uint64_t>> in_core(blocks);
         for (std::size_t b = 0; b < blocks; ++b) {
             const BlockParts parts = read_block(folder_, b);
+            const SolidCells& c = parts.cells;
             const tiles::VoxelBox& core = layout_.blocks[b].core;
             border[b] = border_of(parts, layout_.blocks[b], layout_.halo);
-            first_.push_back(static_cast<std::int32_t>(members_.size()));
-            in_core[b].resize(parts.primitives.size());
-            for (std::size_t n = 0; n < parts.cells.size(); ++n) {
-                const SolidCells& c = parts.cells;
-                if (!core.holds(c.i[n], c.j[n], c.k[n])) continue;
+            first_.push_back(about_.size());
+            about_.insert(about_.end(), parts.primitives.begin(), parts.primitives.end());
+            voxels_.resize(about_.size());
+            for (std::size_t n = 0; n < c.size(); ++n) {
+                if (!core.holds(place_of(c, n))) continue;
                 ++cells_;
-                if (c.primitive[n] >= 0) ++in_core[b][c.primitive[n]];
+                if (c.primitive[n] >= 0) ++voxels_[member(b, c.primitive[n])];
             }
             samples_ += parts.samples.size();
-            for (std::size_t p = 0; p < parts.primitives.size(); ++p) {
-                members_.push_back({b, static_cast<std::int32_t>(p)});
-                about_.push_back(parts.primitives[p]);
-                voxels_.push_back(in_core[b][p]);
-            }
             stage.progress("joining",
                            0.5 * static_cast<double>(b + 1) / static_cast<double>(blocks));
         }
         unite(border);
         border = {};
-        number();
         JoinedBlocks out = collect(stage);
         geometry::sort_by_primitive(out.parts.samples);
         return out;
     }
 
   private:
-    std::int32_t id(std::size_t block, std::int32_t primitive) const {
-        return first_[block] + primitive;
+    // Of all members, which are the primitives of all blocks, that one.
+    std::size_t member(std::size_t block, std::int32_t primitive) const {
+        return first_[block] + static_cast<std::size_t>(primitive);
     }
 
     void unite(const std::vector<Border>& border) {
-        sets_ = Sets(members_.size());
+        UnionFind sets(about_.size());
         for (std::size_t a = 0; a < border.size(); ++a) {
-            const tiles::VoxelBox near = compared(layout_.blocks[a]);
             for (std::size_t b = a + 1; b < border.size(); ++b) {
-                tiles::VoxelBox region = compared(layout_.blocks[b]);
-                if (!meet(near, region)) continue;
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    region.low[axis] = std::max(region.low[axis], near.low[axis]);
-                    region.high[axis] = std::min(region.high[axis], near.high[axis]);
-                }
+                const tiles::VoxelBox region =
+                    compared(layout_.blocks[a]).common(compared(layout_.blocks[b]));
+                if (region.empty()) continue;
                 for (const auto& [p, q] : matches(border[a], border[b], region))
-                    sets_.union_set(static_cast<std::size_t>(id(a, p)),
-                                    static_cast<std::size_t>(id(b, q)));
+                    sets.join(member(a, p), member(b, q));
             }
         }
+        number(sets);
     }
 
     // Numbers the sets that have voxels in a core, by their first member.
-    void number() {
-        std::vector<std::uint64_t> voxels(members_.size(), 0);  // by root
-        for (std::size_t m = 0; m < members_.size(); ++m) voxels[sets_.find_set(m)] += voxels_[m];
-        std::vector<std::int32_t> of_root(members_.size(), -1);
-        for (std::size_t m = 0; m < members_.size(); ++m) {
-            const std::size_t root = sets_.find_set(m);
-            if (of_root[root] < 0 && voxels[root] >= least_voxels) of_root[root] = count_++;
-            number_.push_back(of_root[root]);
+    void number(UnionFind& sets) {
+        std::vector<std::uint64_t> voxels(about_.size(), 0);  // by root
+        for (std::size_t m = 0; m < about_.size(); ++m) voxels[sets.root(m)] += voxels_[m];
+        for (std::size_t m = 0; m < about_.size(); ++m) {
+            const std::size_t root = sets.root(m);  // the first of its set
+            const bool counts = root == m && voxels[root] >= least_voxels;
+            number_.push_back(root == m ? (counts ? count_++ : -1) : number_[root]);
         }
     }
 
@@ -225,9 +186,7 @@ class Joiner {
         parts.frame = layout_.frame;
         SolidCells cells;
         cells.voxel_m = layout_.voxel_m;
-        for (auto* values : {&cells.i, &cells.j, &cells.k, &cells.primitive})
-            values->reserve(cells_);
-        cells.basis.reserve(cells_);
+        SolidCells::each_array([&](auto& values) { values.reserve(cells_); }, cells);
         cells.unseen_below.reserve(cells_);
         std::vector<Role> roles = name(parts);
         parts.points.resize(parts.model.size());
@@ -236,7 +195,7 @@ class Joiner {
             const BlockParts block = read_block(folder_, b);
             std::vector<std::int32_t> numbers;
             for (std::size_t p = 0; p < block.primitives.size(); ++p)
-                numbers.push_back(number_[id(b, static_cast<std::int32_t>(p))]);
+                numbers.push_back(number_[first_[b] + p]);
             add_cells(block, layout_.blocks[b].core, numbers, cells);
             add_seams(block.seams, numbers, parts.seams);
             add_samples(block.samples, numbers, samples_, parts.samples);
@@ -255,7 +214,7 @@ class Joiner {
         std::vector<std::map<char, std::uint64_t>> model(count);
         std::vector<std::map<Role, std::uint64_t>> role(count);
         std::vector<double> odds(count), voxels(count);
-        for (std::size_t m = 0; m < members_.size(); ++m) {
+        for (std::size_t m = 0; m < about_.size(); ++m) {
             if (number_[m] < 0) continue;
             const auto p = static_cast<std::size_t>(number_[m]);
             model[p][about_[m].model] += voxels_[m];
@@ -278,12 +237,10 @@ class Joiner {
 
     static void add_cells(const BlockParts& block, const tiles::VoxelBox& core,
                           const std::vector<std::int32_t>& numbers, SolidCells& to) {
-        const SolidCells& c = block.cells;
-        for (std::size_t n = 0; n < c.size(); ++n) {
-            if (!core.holds(c.i[n], c.j[n], c.k[n])) continue;
-            const std::int32_t p = c.primitive[n];
-            to.add(place_of(c, n), p < 0 ? -1 : numbers[p], c.basis[n]);
-            to.unseen_below.push_back(c.unseen_below[n]);
+        for (std::size_t n = 0; n < block.cells.size(); ++n) {
+            const std::int32_t p = block.cells.primitive[n];
+            if (core.holds(place_of(block.cells, n)))
+                to.add(block.cells, n, p < 0 ? -1 : numbers[p]);
         }
     }
 
@@ -295,12 +252,11 @@ class Joiner {
             seam.flush += more.flush;
             seam.ledge += more.ledge;
         };
-        const auto number = [&](std::int32_t p) { return numbers[p]; };
         for (std::size_t p = 0; p < from.inside.size(); ++p) {
             if (numbers[p] >= 0) add(to.inside[numbers[p]], from.inside[p]);
         }
         for (const auto& [pair, seam] : from.between) {
-            const std::int32_t a = number(pair.first), b = number(pair.second);
+            const std::int32_t a = numbers[pair.first], b = numbers[pair.second];
             if (a < 0 || b < 0) continue;
             if (a == b) {
                 add(to.inside[a], seam);
@@ -334,13 +290,11 @@ class Joiner {
 
     const std::filesystem::path& folder_;
     const tiles::Layout& layout_;
-    std::vector<std::int32_t> first_;  // member that is a block's primitive 0
-    std::vector<Member> members_;
+    std::vector<std::size_t> first_;            // member that is a block's primitive 0
     std::vector<BlockParts::Primitive> about_;  // by member
     std::vector<std::uint64_t> voxels_;         // of each member in its block's core
     std::size_t cells_ = 0, samples_ = 0;       // of all cores
-    Sets sets_{0};
-    std::vector<std::int32_t> number_;  // by member
+    std::vector<std::int32_t> number_;          // by member
     std::int32_t count_ = 0;
 };
 

@@ -68,23 +68,17 @@ template <class Io, class Solids>
 void solid_fields(Io& io, Solids& s, std::size_t count) {
     for (auto* cells : {&s.cells, &s.strays}) {
         io(cells->voxel_m);
-        for (auto* array : {&cells->i, &cells->j, &cells->k, &cells->primitive}) io(*array);
-        io(cells->basis);
+        SolidCells::each_array([&](auto& array) { io(array); }, *cells);
         io(cells->unseen_below);
     }
-    auto& b = s.boundary;
-    list_fields(io, b.patches, [](auto& each, auto& patch) {
+    list_fields(io, s.boundary.patches, [](auto& each, auto& patch) {
         each(patch.primitive);
         each(patch.origin);
         each(patch.c);
         each(patch.noise_m);
         each(patch.offset_m);
     });
-    for (auto* array : {&b.i, &b.j, &b.k, &b.primitive}) io(*array);
-    for (auto& slot : b.slot) io(slot);
-    io(b.form);
-    io(b.share);
-    for (auto& moment : b.moment) io(moment);
+    BoundaryCells::each_array([&](auto& array) { io(array); }, s.boundary);
     io(s.roles, rules::length(count));
 }
 

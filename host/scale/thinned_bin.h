@@ -24,6 +24,18 @@ struct ThinnedBin {
     std::size_t size() const { return x.size(); }
 };
 
+// Appends a cell's mean to a cloud, or a scene's points.
+template <class Points>
+void add_cell(const ThinnedBin& bin, std::size_t n, Points& to) {
+    to.x.push_back(bin.x[n]);
+    to.y.push_back(bin.y[n]);
+    to.z.push_back(bin.z[n]);
+    if (bin.red.empty()) return;
+    to.red.push_back(bin.red[n]);
+    to.green.push_back(bin.green[n]);
+    to.blue.push_back(bin.blue[n]);
+}
+
 // The largest size that divides bin_edge_m and is not above `cell_m`.
 double dividing_cell(double cell_m);
 

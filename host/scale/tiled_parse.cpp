@@ -264,14 +264,13 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
         assemble_objects(parts, objects, safety, scene);
         scene.solid = vdb::solid_voxels({layout.voxel_m, layout.frame.axes}, parts.solids->cells(),
                                         objects.object_of_primitive);
-        tiled->set_objects(objects.object_of_primitive);
-        scene.points = tiled->sample(sampled_points);
-        note_small_extent(extent_m({scene.points.x, scene.points.y, scene.points.z}),
-                          ScanOrigin::cloud_file, scene.notes);
         std::vector<TiledResult::Exposure> exposures;
         for (safety::Disturbance& d : safety.disturbances)
             if (!d.exposure.empty()) exposures.push_back({d.name, std::move(d.exposure)});
-        tiled->set_exposures(parts.solids, std::move(exposures));
+        tiled->set_scene(parts.solids, objects.object_of_primitive, std::move(exposures));
+        scene.points = tiled->sample(sampled_points);
+        note_small_extent(extent_m({scene.points.x, scene.points.y, scene.points.z}),
+                          ScanOrigin::cloud_file, scene.notes);
     });
     result.tiled = tiled;
     return result;

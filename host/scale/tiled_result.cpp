@@ -68,14 +68,7 @@ ScenePoints TiledResult::sample(std::size_t most) const {
         const tiles::ThinnedBin bin = tiles::read_thinned(work_->path(), bins_[b]);
         for (std::size_t n = 0; n < bin.size(); ++n) {
             if (at++ % step) continue;
-            out.x.push_back(bin.x[n]);
-            out.y.push_back(bin.y[n]);
-            out.z.push_back(bin.z[n]);
-            if (!bin.red.empty()) {
-                out.red.push_back(bin.red[n]);
-                out.green.push_back(bin.green[n]);
-                out.blue.push_back(bin.blue[n]);
-            }
+            tiles::add_cell(bin, n, out);
             out.primitive.push_back(label_[b][n]);
             out.object.push_back(object_of(label_[b][n]));
         }

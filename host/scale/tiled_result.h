@@ -31,19 +31,18 @@ class TiledResult {
     std::vector<std::uint64_t> count_points(std::size_t primitives) const;
     ScenePoints sample(std::size_t most) const;
 
-    // What write_points() and load_voxels() take from the whole scene.
-    void set_objects(std::vector<std::int32_t> object_of_primitive) {
-        object_of_primitive_ = std::move(object_of_primitive);
-    }
-    // What is taken away by hand, before the other two.
+    // What is taken away by hand, before what follows.
     void take_away(const TakenAway& taken);
     // A field's strength at each of the cells, for the volume.
     struct Exposure {
         std::string name;
         std::vector<float> values;
     };
-    void set_exposures(std::shared_ptr<const SolidScene> solids, std::vector<Exposure> exposures) {
+    // What sample(), write_points() and load_voxels() take from the whole scene.
+    void set_scene(std::shared_ptr<const SolidScene> solids,
+                   std::vector<std::int32_t> object_of_primitive, std::vector<Exposure> exposures) {
         solids_ = std::move(solids);
+        object_of_primitive_ = std::move(object_of_primitive);
         exposures_ = std::move(exposures);
     }
 

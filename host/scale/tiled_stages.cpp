@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -44,14 +45,9 @@ struct Order {
         return out;
     }
     static Order from(const std::string& text) {
-        std::vector<std::string> parts(1);
-        for (const char c : text) {
-            if (c == '\0') {
-                parts.emplace_back();
-            } else {
-                parts.back() += c;
-            }
-        }
+        std::vector<std::string> parts;
+        for (const auto part : std::views::split(text, '\0'))
+            parts.emplace_back(part.begin(), part.end());
         if (parts.size() != 4)
             throw Error(ErrorKind::input, "the leader's order is of another version of topple");
         double size_m = 0;

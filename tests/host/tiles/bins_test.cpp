@@ -192,9 +192,7 @@ Cut cut(double ceiling_m, double floor_m, double voxel_m) {
         bins.push_back(points.bins()[b].bin);
         thin_bin(points, b, cell_m, folder.path());
         const ThinnedBin thinned = read_thinned(folder.path(), bins.back());
-        made.cells.x.insert(made.cells.x.end(), thinned.x.begin(), thinned.x.end());
-        made.cells.y.insert(made.cells.y.end(), thinned.y.begin(), thinned.y.end());
-        made.cells.z.insert(made.cells.z.end(), thinned.z.begin(), thinned.z.end());
+        for (std::size_t n = 0; n < thinned.size(); ++n) add_cell(thinned, n, made.cells);
     }
     geometry::SceneFrame frame;
     frame.axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
@@ -210,11 +208,10 @@ TEST(Blocks, EachCellIsInOneCoreAndRimsAreTheNextOnes) {
     EXPECT_EQ(made.layout.blocks[0].core.low[0], -8);
     std::vector<std::uint64_t> cells(4, 0);
     for (std::size_t n = 0; n < made.cells.size(); ++n) {
-        const auto at =
-            voxel_at(made.layout.frame, voxel_m, made.cells.x[n], made.cells.y[n], made.cells.z[n]);
+        const auto at = made.layout.voxel_at(made.cells.x[n], made.cells.y[n], made.cells.z[n]);
         int cores = 0;
         for (std::size_t b = 0; b < 4; ++b) {
-            if (!made.layout.blocks[b].core.holds(at[0], at[1], at[2])) continue;
+            if (!made.layout.blocks[b].core.holds(at)) continue;
             ++cores;
             ++cells[b];
         }
