@@ -35,7 +35,9 @@ int set(topple_status* status, int code, std::string_view message) noexcept {
 }
 
 int set(topple_status* status, const Error& error) noexcept {
-    const int code = code_of(error.kind());
+    constexpr std::array codes{TOPPLE_ERROR_INPUT, TOPPLE_ERROR_USAGE, TOPPLE_ERROR_DEVICE,
+                               TOPPLE_ERROR_CANCELLED};
+    const int code = codes[static_cast<std::size_t>(error.kind())];
     try {
         return set(status, code, in_words_of(Interface::c, error.what()));
     } catch (const std::bad_alloc&) {
@@ -43,63 +45,40 @@ int set(topple_status* status, const Error& error) noexcept {
     }
 }
 
-int code_of(ErrorKind kind) noexcept {
-    switch (kind) {
-        case ErrorKind::input:
-            return TOPPLE_ERROR_INPUT;
-        case ErrorKind::usage:
-            return TOPPLE_ERROR_USAGE;
-        case ErrorKind::device:
-            return TOPPLE_ERROR_DEVICE;
-        case ErrorKind::cancelled:
-            return TOPPLE_ERROR_CANCELLED;
-    }
-    return TOPPLE_ERROR_INTERNAL;
+namespace {
+
+// Three columns of the caller's. Columns keep no count without values: of those where one is given
+// all must be, or what is NULL here would be read later.
+template <class T>
+void take_columns(std::uint64_t count, std::int64_t stride_bytes, std::array<const T*, 3> from,
+                  const char* names, std::array<Column<T>*, 3> to) {
+    if (count > 0 && std::ranges::find(from, nullptr) != from.end())
+        throw Error(ErrorKind::usage, std::string("cloud: ") + names + " must not be NULL");
+    const auto stride = stride_bytes ? stride_bytes : std::int64_t{sizeof(T)};
+    for (std::size_t n = 0; n < 3; ++n)
+        *to[n] = {from[n], count, static_cast<std::ptrdiff_t>(stride)};
 }
 
+}  // namespace
+
 CloudView view_of(const topple_cloud* cloud) {
-    topple_cloud defaults{};
-    topple_cloud_init(&defaults, sizeof(defaults));
-    const topple_cloud c = known(&needed(cloud, "cloud"), defaults, "cloud");
-    const auto stride = [](std::int64_t bytes) {
-        return static_cast<std::ptrdiff_t>(bytes ? bytes : std::int64_t{sizeof(float)});
-    };
-    // Columns keep no count without values: what is NULL here would be read later.
-    const auto all = [&](const char* names, bool first, bool second, bool third) {
-        if (c.count > 0 && !(first && second && third))
-            throw Error(ErrorKind::usage, std::string("cloud: ") + names + " must not be NULL");
-    };
-    all("x, y and z", c.x, c.y, c.z);
-    if (c.nx || c.ny || c.nz) all("nx, ny and nz, where one is given,", c.nx, c.ny, c.nz);
-    if (c.red || c.green || c.blue)
-        all("red, green and blue, where one is given,", c.red, c.green, c.blue);
-    const bool viewpoints = c.viewpoint_x || c.viewpoint_y || c.viewpoint_z;
-    if (viewpoints) {
-        all("viewpoint_x, viewpoint_y and viewpoint_z, where one is given,", c.viewpoint_x,
-            c.viewpoint_y, c.viewpoint_z);
-    }
-    array(c.x, "cloud: x", c.count);
+    const topple_cloud c = known(&needed(cloud, "cloud"), {}, "cloud");
     CloudView view;
-    view.x = {c.x, c.count, stride(c.stride_bytes)};
-    view.y = {c.y, c.count, stride(c.stride_bytes)};
-    view.z = {c.z, c.count, stride(c.stride_bytes)};
-    if (c.nx || c.ny || c.nz) {
-        view.nx = {c.nx, c.count, stride(c.normal_stride_bytes)};
-        view.ny = {c.ny, c.count, stride(c.normal_stride_bytes)};
-        view.nz = {c.nz, c.count, stride(c.normal_stride_bytes)};
-    }
-    if (c.red || c.green || c.blue) {
-        const auto step = static_cast<std::ptrdiff_t>(c.colour_stride_bytes ? c.colour_stride_bytes
-                                                                            : std::int64_t{1});
-        view.red = {c.red, c.count, step};
-        view.green = {c.green, c.count, step};
-        view.blue = {c.blue, c.count, step};
-    }
-    if (viewpoints) {
-        view.viewpoint_x = {c.viewpoint_x, c.count, stride(c.viewpoint_stride_bytes)};
-        view.viewpoint_y = {c.viewpoint_y, c.count, stride(c.viewpoint_stride_bytes)};
-        view.viewpoint_z = {c.viewpoint_z, c.count, stride(c.viewpoint_stride_bytes)};
-    }
+    take_columns<float>(c.count, c.stride_bytes, {c.x, c.y, c.z}, "x, y and z",
+                        {&view.x, &view.y, &view.z});
+    if (c.nx || c.ny || c.nz)
+        take_columns<float>(c.count, c.normal_stride_bytes, {c.nx, c.ny, c.nz},
+                            "nx, ny and nz, where one is given,", {&view.nx, &view.ny, &view.nz});
+    if (c.red || c.green || c.blue)
+        take_columns<std::uint8_t>(c.count, c.colour_stride_bytes, {c.red, c.green, c.blue},
+                                   "red, green and blue, where one is given,",
+                                   {&view.red, &view.green, &view.blue});
+    if (c.viewpoint_x || c.viewpoint_y || c.viewpoint_z)
+        take_columns<float>(c.count, c.viewpoint_stride_bytes,
+                            {c.viewpoint_x, c.viewpoint_y, c.viewpoint_z},
+                            "viewpoint_x, viewpoint_y and viewpoint_z, where one is given,",
+                            {&view.viewpoint_x, &view.viewpoint_y, &view.viewpoint_z});
+    array(c.x, "cloud: x", c.count);
     view.width = c.width;
     view.height = c.height;
     view.has_viewpoint = c.viewpoint != nullptr;
@@ -118,16 +97,9 @@ const char* topple_version(void) {
 }
 
 uint32_t topple_version_number(void) {
-    std::uint32_t number = 0, part = 0;
-    for (const char* c = version; *c; ++c) {
-        if (*c != '.') {
-            part = part * 10 + static_cast<std::uint32_t>(*c - '0');
-            continue;
-        }
-        number = number * 100 + part;
-        part = 0;
-    }
-    return number * 100 + part;
+    std::uint32_t major = 0, minor = 0, patch = 0;
+    std::sscanf(version, "%u.%u.%u", &major, &minor, &patch);
+    return (major * 100 + minor) * 100 + patch;
 }
 
 int topple_device_open(const char* backend, uint32_t threads, topple_device** device,
@@ -187,7 +159,5 @@ int topple_list_devices(topple_device_info* devices, uint64_t capacity, uint64_t
 }
 
 void topple_cloud_init(topple_cloud* cloud, size_t size) {
-    if (!cloud || size < sizeof(size_t)) return;
-    std::memset(cloud, 0, size);
-    cloud->size = size;
+    begin(cloud, size);
 }

@@ -11,12 +11,6 @@ Intrinsics intrinsics_of(const topple_intrinsics& from) {
     return {from.width, from.height, from.fx, from.fy, from.cx, from.cy, from.depth_scale};
 }
 
-topple_frame empty_frame() {
-    topple_frame frame{};
-    frame.size = sizeof(frame);
-    return frame;
-}
-
 // An image where the struct says that it lies; NULL: there is none.
 template <class Pixel, class Value>
 ImageView<Pixel> image_of(const Value* first, std::uint32_t width, std::uint32_t height,
@@ -37,9 +31,7 @@ FrameView frame_of(const topple_frame& f, const Intrinsics& k) {
 }  // namespace
 
 FramesView frames_of(const topple_frames* frames) {
-    topple_frames defaults{};
-    topple_frames_init(&defaults, sizeof(defaults));
-    const topple_frames f = known(&needed(frames, "frames"), defaults, "frames");
+    const topple_frames f = known(&needed(frames, "frames"), {}, "frames");
     if (!f.frames && !f.load && f.count > 0)
         throw Error(ErrorKind::usage, "frames: frames and load are NULL; give one of both");
     if (f.frames && f.load)
@@ -57,11 +49,12 @@ FramesView frames_of(const topple_frames* frames) {
         std::copy_n(f.camera_to_world + 16 * n, 16, view.camera_to_world.emplace_back().begin());
     if (f.load) {
         view.image = [f, k = view.intrinsics](std::size_t n) {
-            topple_frame frame = empty_frame();
+            topple_frame frame{};
+            frame.size = sizeof(frame);
             if (const int code = f.load(n, &frame, f.user))
                 throw Error(ErrorKind::input, "frames: load() returned " + std::to_string(code) +
                                                   " for frame " + std::to_string(n));
-            return frame_of(known(&frame, empty_frame(), "frame"), k);
+            return frame_of(known(&frame, {}, "frame"), k);
         };
         return view;
     }
@@ -72,21 +65,19 @@ FramesView frames_of(const topple_frames* frames) {
         if (frame->size != f.frames->size)
             throw Error(ErrorKind::usage, "frames: the size of frame " + std::to_string(n) +
                                               " is not that of the first");
-        view.images.push_back(frame_of(known(frame, empty_frame(), "frame"), view.intrinsics));
+        view.images.push_back(frame_of(known(frame, {}, "frame"), view.intrinsics));
     }
     return view;
 }
 
 }  // namespace topple::c_api
 
+using topple::c_api::begin;
+
 void topple_frame_init(topple_frame* frame, size_t size) {
-    if (!frame || size < sizeof(size_t)) return;
-    std::memset(frame, 0, size);
-    frame->size = size;
+    begin(frame, size);
 }
 
 void topple_frames_init(topple_frames* frames, size_t size) {
-    if (!frames || size < sizeof(size_t)) return;
-    std::memset(frames, 0, size);
-    frames->size = size;
+    begin(frames, size);
 }

@@ -111,11 +111,7 @@ using namespace topple;
 using namespace topple::c_api;
 
 void topple_options_init(topple_options* options, size_t size) {
-    if (!options || size < sizeof(size_t)) return;
-    std::memset(options, 0, size);
-    const topple_options from = defaults();
-    std::memcpy(options, &from, std::min(size, sizeof(from)));
-    options->size = size;
+    begin(options, size, defaults());
 }
 
 int topple_parse(const char* path, const topple_options* options, topple_result** result,

@@ -97,10 +97,32 @@ const Item& item(const std::vector<Item>& items, std::uint64_t index, const char
     return items[index];
 }
 
+// An item of one of the result's lists, as C has it.
+template <class Item>
+int give_item(const topple_result* result, const std::vector<Item> topple_result::*items,
+              std::uint64_t index, Item* to, const char* what, topple_status* status) {
+    return guarded(status,
+                   [&] { give(item(needed(result, "result").*items, index, what), to, what); });
+}
+
 // NaN: that disturbance was not reckoned with.
 double figure(const std::map<std::string, double>& by_disturbance, const std::string& name) {
     const auto found = by_disturbance.find(name);
     return found == by_disturbance.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+}
+
+// Two figures of an object by the disturbance, where the caller wants them.
+using ByDisturbance = std::map<std::string, double> Object::*;
+int give_figures(const topple_result* result, std::uint64_t index, const char* disturbance,
+                 ByDisturbance first, double* first_to, ByDisturbance second, double* second_to,
+                 topple_status* status) {
+    return guarded(status, [&] {
+        const Object& from = item(scene_of(result).objects, index, "object");
+        const std::string name = disturbance ? disturbance : "";
+        safety::disturbance_kind(name);
+        if (first_to) *first_to = figure(from.*first, name);
+        if (second_to) *second_to = figure(from.*second, name);
+    });
 }
 
 }  // namespace
@@ -129,38 +151,27 @@ int topple_result_scene(const topple_result* result, topple_scene* scene, topple
 
 int topple_result_primitive(const topple_result* result, uint64_t index,
                             topple_primitive* primitive, topple_status* status) {
-    return guarded(status, [&] {
-        give(item(needed(result, "result").primitives, index, "primitive"), primitive, "primitive");
-    });
+    return give_item(result, &topple_result::primitives, index, primitive, "primitive", status);
 }
 
 int topple_result_object(const topple_result* result, uint64_t index, topple_object* object,
                          topple_status* status) {
-    return guarded(status, [&] {
-        give(item(needed(result, "result").objects, index, "object"), object, "object");
-    });
+    return give_item(result, &topple_result::objects, index, object, "object", status);
 }
 
 int topple_result_contact(const topple_result* result, uint64_t index, topple_contact* contact,
                           topple_status* status) {
-    return guarded(status, [&] {
-        give(item(needed(result, "result").contacts, index, "contact"), contact, "contact");
-    });
+    return give_item(result, &topple_result::contacts, index, contact, "contact", status);
 }
 
 int topple_result_support(const topple_result* result, uint64_t index, topple_support* support,
                           topple_status* status) {
-    return guarded(status, [&] {
-        give(item(needed(result, "result").supports, index, "support"), support, "support");
-    });
+    return give_item(result, &topple_result::supports, index, support, "support", status);
 }
 
 int topple_result_correction(const topple_result* result, uint64_t index,
                              topple_correction* correction, topple_status* status) {
-    return guarded(status, [&] {
-        give(item(needed(result, "result").corrections, index, "correction"), correction,
-             "correction");
-    });
+    return give_item(result, &topple_result::corrections, index, correction, "correction", status);
 }
 
 int topple_result_numbers(const topple_result* result, const char* of, uint64_t index,
@@ -193,24 +204,14 @@ int topple_result_numbers(const topple_result* result, const char* of, uint64_t 
 
 int topple_result_risk(const topple_result* result, uint64_t index, const char* disturbance,
                        double* risk_J, double* fall_chance, topple_status* status) {
-    return guarded(status, [&] {
-        const Object& from = item(scene_of(result).objects, index, "object");
-        const std::string name = disturbance ? disturbance : "";
-        safety::disturbance_kind(name);
-        if (risk_J) *risk_J = figure(from.risk_J, name);
-        if (fall_chance) *fall_chance = figure(from.fall_chance, name);
-    });
+    return give_figures(result, index, disturbance, &Object::risk_J, risk_J, &Object::fall_chance,
+                        fall_chance, status);
 }
 
 int topple_result_risk_error(const topple_result* result, uint64_t index, const char* disturbance,
                              double* error_J, double* spread_J, topple_status* status) {
-    return guarded(status, [&] {
-        const Object& from = item(scene_of(result).objects, index, "object");
-        const std::string name = disturbance ? disturbance : "";
-        safety::disturbance_kind(name);
-        if (error_J) *error_J = figure(from.risk_error_J, name);
-        if (spread_J) *spread_J = figure(from.risk_spread_J, name);
-    });
+    return give_figures(result, index, disturbance, &Object::risk_error_J, error_J,
+                        &Object::risk_spread_J, spread_J, status);
 }
 
 int topple_result_stays(const topple_result* result, uint64_t index, const double* place_m,

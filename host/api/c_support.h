@@ -30,7 +30,6 @@ struct OutOfMemory {
 int set(topple_status* status, int code, std::string_view message) noexcept;
 // Its message names options as C does.
 int set(topple_status* status, const Error& error) noexcept;
-int code_of(ErrorKind kind) noexcept;
 
 // Runs `body`, and makes a code and a message of what it throws.
 template <class Body>
@@ -84,6 +83,15 @@ void check_size(std::size_t size, const char* name) {
     if (size < sizeof(std::size_t) || size % alignof(Struct) != 0)
         throw Error(ErrorKind::usage, std::string(name) + ": size is " + std::to_string(size) +
                                           "; set it to sizeof of the struct");
+}
+
+// Sets a caller's struct of that size to defaults, and to zeros beyond what this library knows.
+template <class Struct>
+void begin(Struct* given, std::size_t size, const Struct& defaults = {}) {
+    if (!given || size < sizeof(std::size_t)) return;
+    std::memset(given, 0, size);
+    std::memcpy(given, &defaults, std::min(size, sizeof(defaults)));
+    given->size = size;
 }
 
 // The struct as this library knows it: the caller's part of it, and `defaults` beyond.

@@ -59,44 +59,38 @@ std::vector<float> padded(const Array<const float>& axis, std::uint64_t count) {
     return out;
 }
 
-void check_density(const std::string& name, const StandingBody& body, double resolution_m) {
-    Vec3 size{};
-    double volume_m3 = 1;
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto along = [&](const Vec3& p) { return p[a]; };
-        const auto [low, high] = std::ranges::minmax(body.points, {}, along);
-        size[a] = high[a] - low[a];
-        volume_m3 *= size[a] + resolution_m;
-    }
-    const double kg_m3 = body.mass_kg / volume_m3;
-    // Of what is flat no more than that is known.
-    if (volume_m3 == 0 || (kg_m3 <= most_kg_m3 && kg_m3 >= least_kg_m3)) return;
-    throw Error(ErrorKind::input,
-                "barriers: " + name + " of " + io::short_number(body.mass_kg) + " kg would be " +
-                    io::short_number(size[0]) + " x " + io::short_number(size[1]) + " x " +
-                    io::short_number(size[2]) + " m large, " + io::two_digits(kg_m3) +
-                    " kg/m^3: points must be in metres, and its mass in kilograms");
-}
-
 // A centre of mass lies within its body, or of one that was seen from one side beside its points;
 // so many times as far off as they extend it is in another unit.
 constexpr double farthest_off = 5;
 
-void check_center(const std::string& name, const StandingBody& body, double resolution_m) {
-    double off = 0, size = 0;
+// Throws Error(input) for what is in other units than metres and kilograms.
+void check_units(const std::string& name, const StandingBody& body, double resolution_m) {
+    Vec3 size{};
+    double volume_m3 = 1, off = 0;
     for (std::size_t a = 0; a < 3; ++a) {
         const auto along = [&](const Vec3& p) { return p[a]; };
         const auto [low, high] = std::ranges::minmax(body.points, {}, along);
         const double at = body.center_of_mass_m[a];
+        size[a] = high[a] - low[a];
+        volume_m3 *= size[a] + resolution_m;
         off = std::max({off, low[a] - at, at - high[a]});
-        size = std::max(size, high[a] - low[a]);
     }
-    if (off <= farthest_off * (size + resolution_m)) return;
-    throw Error(ErrorKind::input,
-                "barriers: the centre of mass of " + name + " lies " + io::short_number(off) +
-                    " m off its points, which extend over " + io::short_number(size) +
-                    " m: it must be in metres, in their frame; if it is in mm, multiply it by "
-                    "0.001");
+    const double kg_m3 = body.mass_kg / volume_m3;
+    // Of what is flat no more than that is known.
+    if (volume_m3 != 0 && !(kg_m3 <= most_kg_m3 && kg_m3 >= least_kg_m3))
+        throw Error(ErrorKind::input,
+                    "barriers: " + name + " of " + io::short_number(body.mass_kg) +
+                        " kg would be " + io::short_number(size[0]) + " x " +
+                        io::short_number(size[1]) + " x " + io::short_number(size[2]) +
+                        " m large, " + io::two_digits(kg_m3) +
+                        " kg/m^3: points must be in metres, and its mass in kilograms");
+    const double longest = std::ranges::max(size);
+    if (!(off <= farthest_off * (longest + resolution_m)))
+        throw Error(ErrorKind::input,
+                    "barriers: the centre of mass of " + name + " lies " + io::short_number(off) +
+                        " m off its points, which extend over " + io::short_number(longest) +
+                        " m: it must be in metres, in their frame; if it is in mm, multiply it "
+                        "by 0.001");
 }
 
 }  // namespace
@@ -170,8 +164,7 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
                                     ": expected metres up to " + io::short_number(farthest_m));
             }
         }
-        check_density(name, body, resolution_m);
-        check_center(name, body, resolution_m);
+        check_units(name, body, resolution_m);
         physics::Candidate c;
         c.primitives = {static_cast<std::int32_t>(candidates.size())};
         c.body.mass_kg = body.mass_kg;
