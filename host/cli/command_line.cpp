@@ -120,16 +120,7 @@ constexpr const char* out_of_memory_text =
 }  // namespace
 
 int exit_code(ErrorKind kind) {
-    switch (kind) {
-        case ErrorKind::input:
-        case ErrorKind::cancelled:
-            return 1;
-        case ErrorKind::usage:
-            return 2;
-        case ErrorKind::device:
-            return 3;
-    }
-    return 1;
+    return kind == ErrorKind::usage ? 2 : kind == ErrorKind::device ? 3 : 1;
 }
 
 void print_error(const Error& error) {

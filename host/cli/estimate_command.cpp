@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -70,7 +71,8 @@ int run(EstimateArguments& a) {
     catch_interrupts();
     a.options.device = device::open_device(a.backend, a.threads);
     a.options.cancelled = [] { return interrupted() != 0; };
-    return run_long(a.quiet, a.options, [&](Progress& progress) {
+    return run_long(a.quiet, [&](Progress& progress) {
+        a.options.progress = std::ref(progress);
         const Estimate e = estimate(a.input, a.options);
         progress.finish();
         if (a.json) return print_json(e);

@@ -2,13 +2,13 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "cli/before.h"
 #include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/export_options.h"
@@ -190,6 +190,7 @@ int run(ParseArguments& a) {
     if (device::describe(*a.options.device).backend == device::Backend::native)
         keep_to_budget(a.input, a.options);
     const auto work = [&](Progress& progress) {
+        a.options.progress = std::ref(progress);
         a.options.notice = [&](const std::string& line) {
             progress.finish();
             if (!a.quiet)
@@ -214,7 +215,7 @@ int run(ParseArguments& a) {
         print_summary(result.scene, out, output.count(), before);
         if (exported) print_export(*exported);
     };
-    return run_long(a.quiet, a.options, work, [&] { return left_behind(a); });
+    return run_long(a.quiet, work, [&] { return left_behind(a); });
 }
 
 }  // namespace

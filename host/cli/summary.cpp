@@ -11,21 +11,48 @@
 #include <vector>
 
 #include "cli/print.h"
-#include "cli/urgency.h"
 #include "core/listed.h"
 #include "io/text.h"
 #include "objects/told_sentences.h"
 #include "physics/landscape.h"
+#include "result/scene_json.h"
 #include "safety/action.h"
 #include "safety/disturbances.h"
 #include "safety/earthquake/fragility.h"
 #include "safety/earthquake/intensity.h"
 #include "safety/largest_risk.h"
+#include "topple/error.h"
 
 namespace topple::cli {
 namespace {
 
 constexpr std::size_t rows_shown = 12, sentences_shown = 3;
+
+// By which one acts: the category, within one above none first what is certain to be in it, and
+// then the unsafety, which is above 0 and 10 at most. What has no rank comes last.
+double urgency_of(const Object& o) {
+    const int category = o.unsafety_category == "high"     ? 3
+                         : o.unsafety_category == "medium" ? 2
+                         : o.unsafety_category == "low"    ? 1
+                                                           : 0;
+    return 10 * (2 * category + (category > 0 && o.unsafety_certain)) + rank_of(o);
+}
+
+// That on which one would act first, and its risk.
+std::string worst_text(const Scene& scene) {
+    const Object* worst = nullptr;
+    for (const Object& o : scene.objects) {
+        if (o.grounded || !o.seen_enough || safety::largest_risk(o).kind == nullptr) continue;
+        if (worst == nullptr || urgency_of(o) > urgency_of(*worst)) worst = &o;
+    }
+    if (worst == nullptr) return "nothing is at risk";
+    const auto [kind, risk_J] = safety::largest_risk(*worst);
+    std::string text = "object " + std::to_string(worst->id);
+    if (!worst->name.empty()) text.append(" (").append(io::printable(worst->name)).append(")");
+    text.append(", ").append(worst->unsafety_category).append(worst->unsafety_certain ? "" : "?");
+    text.append(", ").append(io::two_digits(risk_J)).append(" J per ");
+    return text.append(kind->words.event);
+}
 
 // Without powers of ten where that is long enough for it.
 std::string three_digits(double value) {
@@ -238,6 +265,16 @@ void print_objects(const Scene& scene) {
 
 }  // namespace
 
+std::optional<Worst> worst_of(const std::filesystem::path& output) {
+    const io::FileName file = io::FileName::in(output, "scene.json");
+    if (!file.is_there()) return std::nullopt;
+    try {
+        return Worst{worst_text(io::read_scene_json(file)), file.path()};
+    } catch (const Error&) {
+        return std::nullopt;  // of another version, or damaged: nothing to compare with
+    }
+}
+
 void print_summary(const Scene& scene, const std::filesystem::path& out, double output_s,
                    const std::optional<Worst>& before) {
     double seconds = output_s;
@@ -263,7 +300,9 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
         print("\n%zu of %s held.\n", static_cast<std::size_t>(std::ranges::count(held, true)),
               io::counted(held.size(), "correction").c_str());
     }
-    if (before) print_change(*before, scene);
+    if (before)
+        print("Worst before (%s): %s; now: %s.\n", io::path_text(before->of).c_str(),
+              before->text.c_str(), worst_text(scene).c_str());
     print("\nReport: %s\n", (out / "report.html").c_str());
 }
 

@@ -8,8 +8,8 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/long_run.h"
 #include "cli/print.h"
-#include "cli/progress.h"
 #include "io/output_folder.h"
 #include "io/replace_file.h"
 #include "io/staging_folder.h"
@@ -74,19 +74,13 @@ void check(const VerifyArguments& a) {
 int run_verify(const VerifyArguments& a) {
     check(a);
     catch_interrupts();
-    Progress progress(a.json);
-    try {
+    return run_long(a.json, [&](Progress& progress) {
         const mujoco::Verdict verdict = verify(a, progress);
         const std::string json = mujoco::verdict_json(verdict);
         keep(a.parsed, json);
         progress.finish();
         std::fputs(a.json ? json.c_str() : mujoco::verdict_text(verdict).c_str(), stdout);
-    } catch (...) {
-        progress.finish();
-        if (interrupted() != 0) return interrupted_exit();
-        throw;
-    }
-    return 0;
+    });
 }
 
 }  // namespace

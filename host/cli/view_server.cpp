@@ -10,12 +10,14 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "io/open_file.h"
 #include "io/text.h"
 #include "topple/error.h"
 
@@ -50,18 +52,13 @@ bool plain_name(std::string_view name) {
 std::optional<std::string> decoded(std::string_view text) {
     std::string out;
     for (std::size_t at = 0; at < text.size(); ++at) {
-        if (text[at] != '%') {
-            out.push_back(text[at]);
-            continue;
-        }
-        const auto digit = [&](std::size_t place) {
-            const std::string_view digits = "0123456789abcdef";
-            const char c = place < text.size() ? text[place] : ' ';
-            return digits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c);
-        };
-        const std::size_t high = digit(at + 1), low = digit(at + 2);
-        if (high == std::string_view::npos || low == std::string_view::npos) return std::nullopt;
-        out.push_back(static_cast<char>(16 * high + low));
+        out.push_back(text[at]);
+        if (text[at] != '%') continue;
+        const std::string_view digits = text.substr(at + 1, 2);
+        unsigned char value = 0;
+        const auto read = std::from_chars(digits.begin(), digits.end(), value, 16);
+        if (digits.size() < 2 || read.ptr != digits.end()) return std::nullopt;
+        out.back() = static_cast<char>(value);
         at += 2;
     }
     return out;
@@ -69,14 +66,7 @@ std::optional<std::string> decoded(std::string_view text) {
 
 // What lies in the folder that is served, and where it is served.
 struct Served {
-    Served() = default;
-    ~Served() {
-        if (folder >= 0) close(folder);
-    }
-    Served(const Served&) = delete;
-    Served& operator=(const Served&) = delete;
-
-    int folder = -1;
+    io::Descriptor folder;
     std::string port;
 };
 
@@ -114,8 +104,8 @@ class Session : public std::enable_shared_from_this<Session> {
 
     void send_file(const Request& request, const std::string& name) {
         if (!plain_name(name)) return not_found(request);
-        const int fd =
-            openat(served_.folder, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        const int fd = openat(served_.folder.get(), name.c_str(),
+                              O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         if (fd < 0) return not_found(request);
         beast::file_posix file;
         file.native_handle(fd);  // which closes it
@@ -190,8 +180,8 @@ struct ViewServer::Inner {
 ViewServer::ViewServer(const std::filesystem::path& folder, std::uint16_t port)
     : inner_(std::make_unique<Inner>()) {
     Served& served = inner_->served;
-    served.folder = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (served.folder < 0)
+    served.folder = io::Descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (served.folder.get() < 0)
         io::fail(folder, std::string("can't be opened: ") + std::strerror(errno));
     tcp::acceptor& acceptor = inner_->acceptor;
     beast::error_code error;

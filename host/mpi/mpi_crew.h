@@ -30,8 +30,6 @@ class MpiCrew final : public Crew {
     ~MpiCrew() override;
 
     int rank() const { return rank_; }
-    int size() const { return size_; }
-    int machines() const { return machines_; }
     // This rank's share of its machine's cores: each core that it may run on, divided by the number
     // of ranks that may, rounded down, but at least 1.
     unsigned cores() const { return cores_; }

@@ -5,12 +5,7 @@
 namespace topple::test {
 namespace {
 
-class Tiled : public Program {
-  protected:
-    void put(const std::string& name, const std::string& text) const {
-        std::ofstream(in(name), std::ios::binary) << text;
-    }
-};
+using Tiled = Program;
 
 TEST_F(Tiled, says_what_is_wrong_with_a_cloud) {
     put("few.xyz", "0 0 0\n1 0 0\n0 1 0\n");
