@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -14,17 +15,8 @@ namespace topple::python {
 namespace {
 
 const char* name_of(ErrorKind kind) {
-    switch (kind) {
-        case ErrorKind::input:
-            return "input";
-        case ErrorKind::usage:
-            return "usage";
-        case ErrorKind::device:
-            return "device";
-        case ErrorKind::cancelled:
-            return "cancelled";
-    }
-    return "";
+    constexpr std::array names{"input", "usage", "device", "cancelled"};
+    return names.at(static_cast<std::size_t>(kind));
 }
 
 // topple::Error becomes topple.Error, with its kind.

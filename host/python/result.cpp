@@ -16,29 +16,27 @@
 namespace topple::python {
 namespace {
 
-// The vector's memory as an array, which keeps its owner alive.
+// Memory of the owner's as an array, which keeps it alive: values of this shape, `step` bytes from
+// one row to the next.
+template <class T>
+py::array lent(const T* first, std::vector<py::ssize_t> shape, std::size_t step,
+               const py::object& owner) {
+    std::vector<py::ssize_t> strides{static_cast<py::ssize_t>(step)};
+    if (shape.size() > 1) strides.push_back(sizeof(T));
+    return py::array_t<T>(std::move(shape), std::move(strides), first, owner);
+}
+
 template <class T>
 py::array borrowed(const std::vector<T>& values, const py::object& owner) {
-    return py::array_t<T>({static_cast<py::ssize_t>(values.size())},
-                          {static_cast<py::ssize_t>(sizeof(T))}, values.data(), owner);
+    return lent(values.data(), {static_cast<py::ssize_t>(values.size())}, sizeof(T), owner);
 }
 
-// The same of vectors: (N, 3).
-py::array vectors(const std::vector<Vec3>& values, const py::object& owner) {
-    return py::array_t<double>(
-        {static_cast<py::ssize_t>(values.size()), py::ssize_t{3}},
-        {static_cast<py::ssize_t>(sizeof(Vec3)), static_cast<py::ssize_t>(sizeof(double))},
-        values.empty() ? nullptr : values.front().data(), owner);
-}
-
-// A row of numbers for each item that has nothing else.
+// The same of what has nothing but so many numbers: a row for each, (N, width).
 template <class Row>
 py::array rows(const std::vector<Row>& values, const py::object& owner) {
-    constexpr auto width = std::tuple_size_v<decltype(kind<Row>.fields)>;
-    static_assert(sizeof(Row) == width * sizeof(double));
-    return py::array_t<double>({static_cast<py::ssize_t>(values.size()), py::ssize_t{width}},
-                               {py::ssize_t{sizeof(Row)}, py::ssize_t{sizeof(double)}},
-                               reinterpret_cast<const double*>(values.data()), owner);
+    constexpr std::size_t width = sizeof(Row) / sizeof(double);
+    return lent(reinterpret_cast<const double*>(values.data()),
+                {static_cast<py::ssize_t>(values.size()), py::ssize_t{width}}, sizeof(Row), owner);
 }
 
 // A few numbers as an array of their own.
@@ -67,9 +65,7 @@ py::array blow_rows(const std::vector<double>& blows, const DirectedBarrier& of,
                     const py::object& owner) {
     const auto directions = static_cast<py::ssize_t>(of.push_J.size());
     const auto heights = static_cast<py::ssize_t>(of.height_m.size());
-    const auto width = static_cast<py::ssize_t>(sizeof(double));
-    return py::array_t<double>({directions, heights}, {heights * width, width}, blows.data(),
-                               owner);
+    return lent(blows.data(), {directions, heights}, of.height_m.size() * sizeof(double), owner);
 }
 
 // The value of a field of `item`, which keeps `owner` alive where it lies in its memory.
@@ -86,7 +82,7 @@ py::object python_value(const Item& item, const T& value, const Note& note,
             if (note.rows) return blow_rows(value, item, owner);
         return borrowed(value, owner);
     } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {
-        return vectors(value, owner);
+        return rows(value, owner);
     } else if constexpr (std::is_same_v<T, decltype(Scene::timings_s)>) {
         py::dict out;
         for (const auto& [name, seconds] : value) out[py::str(name)] = seconds;
@@ -168,13 +164,9 @@ void bind_landscape(py::module_& module) {
                 const auto count = static_cast<py::ssize_t>(poses.size());
                 const auto* first = poses.empty() ? nullptr : &(poses.data()->*field.member);
                 if constexpr (std::is_same_v<decltype(first), const Vec3*>)
-                    return py::array_t<double>(
-                        {count, py::ssize_t{3}},
-                        {py::ssize_t{sizeof(Pose)}, py::ssize_t{sizeof(double)}},
-                        first ? first->data() : nullptr, self);
+                    return lent(first ? first->data() : nullptr, {count, 3}, sizeof(Pose), self);
                 else
-                    return py::array_t<std::remove_cvref_t<decltype(*first)>>(
-                        {count}, {py::ssize_t{sizeof(Pose)}}, first, self);
+                    return lent(first, {count}, sizeof(Pose), self);
             },
             (std::string("by pose: ") + field.words).c_str());
     });
@@ -233,17 +225,18 @@ void bind_result(py::module_& module) {
     bind_items(module);
     py::class_<Parsed, std::shared_ptr<Parsed>> bound(module, "Parsed");
     bind_fields<Scene>(module, bound, scene_of);
+    for (const auto& [name, member] : {std::pair("x", &ScenePoints::x),
+                                       {"y", &ScenePoints::y},
+                                       {"z", &ScenePoints::z},
+                                       {"nx", &ScenePoints::nx},
+                                       {"ny", &ScenePoints::ny},
+                                       {"nz", &ScenePoints::nz}})
+        bound.def_property_readonly(name, point_array(member));
     bound
         .def_property_readonly(
             "in_blocks", [](const Parsed& p) { return p.result.tiled != nullptr; },
             "bool: a cloud was parsed in blocks (docs/scale.md), and the arrays over its points "
             "are of a sample of them.")
-        .def_property_readonly("x", point_array(&ScenePoints::x))
-        .def_property_readonly("y", point_array(&ScenePoints::y))
-        .def_property_readonly("z", point_array(&ScenePoints::z))
-        .def_property_readonly("nx", point_array(&ScenePoints::nx))
-        .def_property_readonly("ny", point_array(&ScenePoints::ny))
-        .def_property_readonly("nz", point_array(&ScenePoints::nz))
         .def_property_readonly("point_primitive", point_array(&ScenePoints::primitive),
                                "(N,) int32: the primitive of each point that is finite, -1: none.")
         .def_property_readonly(

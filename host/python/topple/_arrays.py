@@ -82,6 +82,16 @@ def _by_name(source, names, what):
     return [source[name] for name in names]
 
 
+def fields(records, names, what):
+    """The columns of these names of an array of records; None where it is none."""
+    if not records.dtype.names:
+        return None
+    missing = [name for name in names if name not in records.dtype.names]
+    if missing:
+        raise usage(f'{what}: the records have no field {missing[0]}')
+    return [records[name] for name in names]
+
+
 def wrong_array(values, name, shape, variable, columns='', source=None):
     """The Error that says what an array is and what it should be, with the mend; of what it was made of, too."""
     mend = ''
@@ -127,15 +137,12 @@ def columns(source, names, what):
     """The three coordinates of an array, of records with fields of these names, or of three arrays."""
     if isinstance(source, tuple) and len(source) == 3:
         return [column(c, f'{what} {name}', name) for c, name in zip(source, names)]
-    by_name = _by_name(source, names, what)
+    by_name, given = _by_name(source, names, what), source
+    if by_name is None:
+        source = as_array(source, what)
+        by_name = fields(source, names, what)
     if by_name is not None:
         return [column(c, f'{what} {name}', f"{what}['{name}']") for c, name in zip(by_name, names)]
-    given, source = source, as_array(source, what)
-    if source.dtype.names:
-        missing = [name for name in names if name not in source.dtype.names]
-        if missing:
-            raise usage(f'{what}: the records have no field {missing[0]}')
-        return [column(source[name], f'{what} {name}', f"{what}['{name}']") for name in names]
     if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
         raise wrong_array(source, what, '(N, 3)', what,
                           '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 and source.shape[0] != 3 else '', given)
@@ -157,21 +164,15 @@ def has_rows(given):
 def channels(source):
     """Red, green and blue of an array, of records with fields of these names, or of three arrays; no copies."""
     names = ('red', 'green', 'blue')
-    if isinstance(source, tuple) and len(source) == 3:
-        channels = [as_array(c, 'colours') for c in source]
-    elif (by_name := _by_name(source, names, 'colours')) is not None:
-        channels = [as_array(c, 'colours') for c in by_name]
-    else:
+    given = source if isinstance(source, tuple) and len(source) == 3 else _by_name(source, names, 'colours')
+    if given is None:
         source = as_array(source, 'colours')
-        if source.dtype.names:
-            missing = [name for name in names if name not in source.dtype.names]
-            if missing:
-                raise usage(f'colours: the records have no field {missing[0]}')
-            channels = [source[name] for name in names]
-        elif source.ndim == 2 and source.shape[1] == 3:
-            channels = [source[:, c] for c in range(3)]
-        else:
+        given = fields(source, names, 'colours')
+    if given is None:
+        if source.ndim != 2 or source.shape[1] != 3:
             raise usage(f'colours: an array of shape {source.shape}; expected (N, 3)')
+        given = [source[:, c] for c in range(3)]
+    channels = [as_array(c, 'colours') for c in given]
     for channel in channels:
         if channel.dtype != np.uint8:
             raise usage(f'colours: {channel.dtype}; expected uint8, 0 to 255: '

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._arrays import as_array, columns, exactly, has_rows, number, usage, warn
+from ._arrays import as_array, columns, exactly, fields, has_rows, number, usage, warn
 from ._shown import figure
 from ._topple import Device, open_device
 from ._topple import stages as _stages
@@ -309,18 +309,14 @@ def convolve(primary, footprint, first, *, device=None, out=None):
     direction's entries start, and last n. Returns an array of primary's shape; out: an array for it."""
     planes = exactly(primary, 'primary', ('directions', 'height', 'width'), np.float32)
     entries = as_array(footprint, 'footprint')
-    if entries.dtype.names is None:
+    given = fields(entries, footprint_dtype.names, 'footprint')
+    if given is None:
         table = exactly(entries, 'footprint', (None, 3), float)
         if not (table[:, :2] == np.rint(table[:, :2])).all():
             raise usage('footprint: dx and dy must be whole cells')
-        entries = [table[:, 0].astype(np.int64), table[:, 1].astype(np.int64), table[:, 2]]
-    else:
-        missing = [name for name in footprint_dtype.names if name not in entries.dtype.names]
-        if missing:
-            raise usage(f'footprint: the records have no field {missing[0]}')
-        entries = [entries[name] for name in footprint_dtype.names]
-    fields = [exactly(e, f'footprint {name}', (None,), footprint_dtype[name]) for e, name in zip(entries, footprint_dtype.names)]
+        given = [table[:, 0].astype(np.int64), table[:, 1].astype(np.int64), table[:, 2]]
+    given = [exactly(e, f'footprint {name}', (None,), footprint_dtype[name]) for e, name in zip(given, footprint_dtype.names)]
     out = _target(out, planes.shape)
-    _stages.convolve(planes.reshape(-1), planes.shape, fields, exactly(first, 'first', (len(planes) + 1,), np.uint32),
+    _stages.convolve(planes.reshape(-1), planes.shape, given, exactly(first, 'first', (len(planes) + 1,), np.uint32),
                      _opened(device), out.reshape(-1))
     return out

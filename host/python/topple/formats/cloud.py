@@ -62,7 +62,7 @@ def write_cloud(path, cloud, source):
         for c, name in enumerate(('red', 'green', 'blue')):
             records[name] = cloud.colours[:, c]
     with open(path, 'wb') as out:
-        out.write((_pcd_header if pcd else _ply_header)(cloud).encode())
+        out.write((_pcd_header(records, None if seen_from else cloud.viewpoint) if pcd else _ply_header(records)).encode())
         records.tofile(out)
 
 
@@ -73,23 +73,18 @@ def kept(cloud, path, folder, options):
     return out, cloud.notes, cloud.offset
 
 
-def _ply_header(cloud):
-    lines = ['ply', 'format binary_little_endian 1.0', f'element vertex {len(cloud.points)}',
-             *(f'property float {name}' for name in 'xyz')]
-    if cloud.viewpoint is not None and cloud.viewpoint.ndim == 2:
-        lines += [f'property float {name}' for name in VIEWPOINT]
-    if cloud.colours is not None:
-        lines += [f'property uchar {name}' for name in ('red', 'green', 'blue')]
-    return '\n'.join([*lines, 'end_header', ''])
+def _ply_header(records):
+    kinds = {'f': 'float', 'u': 'uchar'}
+    return '\n'.join(['ply', 'format binary_little_endian 1.0', f'element vertex {len(records)}',
+                      *(f'property {kinds[records.dtype[name].kind]} {name}' for name in records.dtype.names), 'end_header', ''])
 
 
-def _pcd_header(cloud):
-    colour = cloud.colours is not None
-    seen_from = cloud.viewpoint is not None and cloud.viewpoint.ndim == 2
+def _pcd_header(records, viewpoint):
+    """viewpoint: that of all points, or None."""
     # A quaternion of 1 0 0 0 at the origin would say that the place is not known; its negative turns as little.
-    place = '0 0 0 1 0 0 0' if cloud.viewpoint is None or seen_from else \
-        ' '.join(repr(float(v)) for v in cloud.viewpoint) + ' -1 0 0 0'
-    names = [*'xyz', *(VIEWPOINT if seen_from else ())]
-    return '\n'.join(['# .PCD v0.7', 'VERSION 0.7', 'FIELDS ' + ' '.join(names) + ' rgb' * colour, 'SIZE' + ' 4' * (len(names) + colour),
-                      'TYPE' + ' F' * len(names) + ' U' * colour, 'COUNT' + ' 1' * (len(names) + colour), f'WIDTH {len(cloud.points)}', 'HEIGHT 1',
-                      f'VIEWPOINT {place}', f'POINTS {len(cloud.points)}', 'DATA binary', ''])
+    place = '0 0 0 1 0 0 0' if viewpoint is None else ' '.join(repr(float(v)) for v in viewpoint) + ' -1 0 0 0'
+    names = records.dtype.names
+    kinds = [records.dtype[name].kind.upper() for name in names]
+    return '\n'.join(['# .PCD v0.7', 'VERSION 0.7', 'FIELDS ' + ' '.join(names), 'SIZE' + ' 4' * len(names), 'TYPE ' + ' '.join(kinds),
+                      'COUNT' + ' 1' * len(names), f'WIDTH {len(records)}', 'HEIGHT 1', f'VIEWPOINT {place}', f'POINTS {len(records)}',
+                      'DATA binary', ''])
