@@ -224,8 +224,8 @@ inline constexpr auto kind<Object> = described(
           "whether it is the ground: floor, walls and what is fixed to them. It can't fall",
           &topple_object::grounded),
     field("agreement", &Object::agreement,
-          "share of the sampler's 8 chains, 0 to 1, that found it, but for a tenth; they start "
-          "from four different partitions",
+          "the probability that it is one thing, whole, 0 to 1; 1: the ground, and what a "
+          "correction says is one",
           Note{.since = "agreement"}, &topple_object::agreement),
     field("mass_kg", &Object::mass_kg, "kilograms", &topple_object::mass_kg),
     field("mass_model", &Object::mass_model,

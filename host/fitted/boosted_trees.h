@@ -55,5 +55,7 @@ double log_odds(double probability);
 const BoostedTrees& shell_model(std::span<const std::string_view> columns);
 // Whether two primitives are one solid object. Rows are graph::joint_features(), likewise.
 const BoostedTrees& joint_model(std::span<const std::string_view> columns);
+// Whether an object is one thing, whole. Rows are those of graph::whole_probability(), likewise.
+const BoostedTrees& whole_model(std::span<const std::string_view> columns);
 
 }  // namespace topple::fitted

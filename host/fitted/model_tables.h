@@ -6,6 +6,6 @@
 // The fitted models, as the build makes constants of their files.
 namespace topple::fitted {
 
-extern const TreeTable shell_table, joint_table;
+extern const TreeTable shell_table, joint_table, whole_table;
 
 }  // namespace topple::fitted

@@ -14,4 +14,9 @@ const BoostedTrees& joint_model(std::span<const std::string_view> columns) {
     return model;
 }
 
+const BoostedTrees& whole_model(std::span<const std::string_view> columns) {
+    static const BoostedTrees model(whole_table, "whole.model.json", columns);
+    return model;
+}
+
 }  // namespace topple::fitted

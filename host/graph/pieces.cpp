@@ -2,8 +2,11 @@
 #include "graph/pieces.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <set>
+#include <string_view>
 
 #include "core/union_find.h"
 #include "fitted/boosted_trees.h"
@@ -75,6 +78,14 @@ Table<ObjectId, PieceOf> likely_pieces(std::span<const Joint> joints, const Know
         may_be(b, a, j.a);
     }
     return out;
+}
+
+double whole_probability(const PieceOf& piece, const WeakestJoint& weakest, std::uint64_t voxels) {
+    constexpr auto columns = std::to_array<std::string_view>({"piece", "joint", "log_voxels"});
+    const std::array row{static_cast<float>(piece.probability),
+                         static_cast<float>(weakest.probability),
+                         static_cast<float>(std::log1p(static_cast<double>(voxels)))};
+    return fitted::probability(fitted::whole_model(columns).log_odds(row));
 }
 
 }  // namespace topple::graph

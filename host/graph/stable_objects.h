@@ -35,9 +35,7 @@ struct GroupingOptions {
 
 struct Grouping {
     Table<PrimitiveId, std::int32_t> group;  // -1: fixed to the ground
-    // Share of the sampler's chains that found it, but for a tenth of its primitives.
-    Table<GroupId, double> agreement;
-    std::vector<double> energy_curve;  // best energy after each step of the annealing
+    std::vector<double> energy_curve;        // best energy after each step of the annealing
 };
 
 // The rigid body that a set of primitives makes: its mass properties, and where it is held up by

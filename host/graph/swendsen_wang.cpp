@@ -42,12 +42,12 @@ class Schedule {
         const double by_steps =
             step < options_.anneal_steps
                 ? step / static_cast<double>(options_.anneal_steps)
-                : 1 + (step - options_.anneal_steps) /
-                          static_cast<double>(std::max(1u, options_.sample_steps));
+                : 1 + (step - options_.anneal_steps) / static_cast<double>(options_.sample_steps);
         if (options_.time_limit_s <= 0) return by_steps;
         const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-        return std::max(by_steps, 2 * elapsed / options_.time_limit_s);
+        return std::max(by_steps, end() * elapsed / options_.time_limit_s);
     }
+    double end() const { return options_.sample_steps > 0 ? 2 : 1; }
     double temperature(double along) const {
         if (along >= 1) return options_.sample_temperature;
         return options_.first_temperature *
@@ -79,7 +79,7 @@ class Run {
         }
         for (; step_ < options_.anneal_steps + options_.sample_steps; ++step_) {
             const double along = schedule_.at(step_);
-            if (along >= 2 || stopped()) break;
+            if (along >= schedule_.end() || stopped()) break;
             if (!chain_.step(schedule_.temperature(along))) return true;
             // A margin, so that rounding in the running sum is not taken for an improvement.
             if (chain_.energy() < out_.best_energy - 1e-9) {
@@ -144,28 +144,6 @@ std::vector<double> best_of(const std::vector<Outcome>& chains) {
     return curve;
 }
 
-// Of each group, whether another labelling of the nodes holds it, but for a tenth.
-std::vector<bool> found_again(const std::vector<std::int32_t>& label, std::size_t groups,
-                              const std::vector<std::int32_t>& other) {
-    Table<GroupId, std::map<std::int32_t, std::size_t>> shared(groups);
-    std::map<std::int32_t, std::size_t> size;
-    Table<GroupId, std::size_t> own(groups, 0);
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        ++size[other[n]];
-        if (label[n] < 0) continue;
-        ++shared[label[n]][other[n]];
-        ++own[label[n]];
-    }
-    std::vector<bool> out(groups);
-    for (std::size_t g = 0; g < groups; ++g) {
-        for (const auto& [l, both] : shared[g]) {
-            const std::size_t either = own[g] + size[l] - both;
-            if (l != pinned_label && 10 * both >= 9 * either) out[g] = true;
-        }
-    }
-    return out;
-}
-
 Partition combined(const std::vector<Outcome>& chains, std::size_t edges) {
     Partition result;
     const Outcome* best = &chains.front();
@@ -177,15 +155,6 @@ Partition combined(const std::vector<Outcome>& chains, std::size_t edges) {
     result.label = canonical(best->best_labels);
     result.energy = best->best_energy;
     result.best_energy_curve = best_of(chains);
-    std::size_t groups = 0;
-    for (const std::int32_t l : result.label)
-        groups = std::max(groups, static_cast<std::size_t>(l + 1));
-    result.agreement.assign(groups, 0.0);
-    for (const Outcome& c : chains) {
-        const std::vector<bool> found = found_again(result.label, groups, c.best_labels);
-        for (std::size_t g = 0; g < groups; ++g)
-            result.agreement[g] += found[g] / static_cast<double>(chains.size());
-    }
     result.joined.assign(edges, 0.0);
     for (std::size_t e = 0; e < edges && samples > 0; ++e) {
         std::uint64_t joined = 0;

@@ -13,7 +13,6 @@
 namespace topple::graph {
 
 using NodeId = Id<struct Nodes>;
-using GroupId = Id<struct Groups>;
 
 struct Edge {
     std::int32_t a = -1, b = -1;
@@ -64,9 +63,6 @@ struct Partition {
     Table<NodeId, std::int32_t> label;  // its group, numbered by first appearance;
                                         // the pinned group, where there is one, is -1
     double energy = 0;
-    // Share of the chains whose own best partition holds it, to nine tenths of the nodes
-    // that either holds. Groups that few chains found are not sure.
-    Table<GroupId, double> agreement;
     std::vector<double> joined;  // per edge: share of sampled states with both ends in one group
     std::vector<double> best_energy_curve;  // after every step of the annealing, over all chains
     std::uint64_t energies_evaluated = 0;   // groups asked for

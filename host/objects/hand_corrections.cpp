@@ -42,13 +42,8 @@ std::set<std::size_t> way_between(const graph::KnownLinks& links,
 // Groups numbered by first appearance again, where some are gone or of the room now.
 void renumber_groups(graph::Grouping& grouping) {
     std::map<std::int32_t, std::int32_t> number{{-1, -1}};
-    std::vector<double> agreement;
-    for (std::int32_t& g : grouping.group) {
-        const auto [at, fresh] = number.try_emplace(g, static_cast<std::int32_t>(agreement.size()));
-        if (fresh) agreement.push_back(grouping.agreement[g]);
-        g = at->second;
-    }
-    grouping.agreement = std::move(agreement);
+    for (std::int32_t& g : grouping.group)
+        g = number.try_emplace(g, static_cast<std::int32_t>(number.size()) - 1).first->second;
 }
 
 }  // namespace

@@ -53,31 +53,38 @@ void number_objects(ObjectStage& out) {
         out.object_of_primitive.push_back(g + grounded + 1);
 }
 
-// The voxels that the surface of each was seen in.
-Table<PrimitiveId, std::uint64_t> seen_surface(const SolidCells& cells, std::size_t primitives) {
-    Table<PrimitiveId, std::uint64_t> out(primitives, 0);
-    for (std::size_t n = 0; n < cells.size(); ++n)
-        if (cells.primitive[n] >= 0 && cells.basis[n] == Basis::surface) ++out[cells.primitive[n]];
-    return out;
-}
-
 // What objects may be pieces of, and whether they may be several.
 void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
                    const SolidCells& cells, ObjectStage& out) {
-    const Table<PrimitiveId, std::uint64_t> seen =
-        seen_surface(cells, out.object_of_primitive.size());
+    // The voxels that the surface of each was seen in, and all.
+    Table<PrimitiveId, std::uint64_t> seen(out.object_of_primitive.size(), 0);
+    Table<ObjectId, std::uint64_t> solid(out.objects.size(), 0);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p < 0) continue;
+        ++solid[out.object_of_primitive[p]];
+        if (cells.basis[n] == Basis::surface) ++seen[p];
+    }
     Table<ObjectId, std::uint64_t> of_objects(out.objects.size(), 0);  // none of the ground
     for (std::size_t p = 0; p < seen.size(); ++p) {
         const ObjectId o = out.object_of_primitive[p];
         if (!out.objects[o].grounded) of_objects[o] += seen[p];
     }
+    const graph::LinkedNodes nodes(static_cast<std::int32_t>(seen.size()), links);
     const Table<ObjectId, graph::PieceOf> pieces =
         graph::likely_pieces(joints, links, out.object_of_primitive, of_objects);
     const Table<ObjectId, graph::WeakestJoint> weakest =
         graph::weakest_joints(joints, links, out.object_of_primitive, seen, out.objects.size());
     for (std::size_t o = 0; o < out.objects.size(); ++o) {
-        out.objects[o].piece = pieces[o];
-        if (!out.objects[o].grounded) out.objects[o].weakest = weakest[o];
+        Body& object = out.objects[o];
+        object.piece = pieces[o];
+        if (object.grounded) continue;
+        object.weakest = weakest[o];
+        const std::vector<std::int32_t>& parts = object.candidate.primitives;
+        const bool known = parts.size() > 1 && std::ranges::all_of(parts, [&](std::int32_t p) {
+                               return nodes.one_object(parts.front(), p) == true;
+                           });
+        object.agreement = known ? 1 : graph::whole_probability(pieces[o], weakest[o], solid[o]);
     }
 }
 
@@ -116,7 +123,6 @@ void collect_objects(const SolidScene& solids, const Table<PrimitiveId, bool>& s
         object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
         if (mass.weighed) object.body_error.mass_kg = 0;
         object.grounded = has_ground && o == 0;
-        if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
             graph::Rest rest = graph::infer_rest(
                 object.candidate, columns[o], out.contacts, boundary,

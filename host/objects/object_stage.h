@@ -57,7 +57,7 @@ struct Body {
     bool seen_enough() const {
         return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
     }
-    double agreement = 1;                // share of the sampler's chains that found it
+    double agreement = 1;                // how likely it is one thing, whole
     graph::PieceOf piece;                // what it may be a piece of
     graph::WeakestJoint weakest;         // what it hangs together by
     Landscape poses;                     // grid frame; its places are those of `sliding`

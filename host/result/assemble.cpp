@@ -213,7 +213,7 @@ void add_walks(const SafetyStage& safety, const ToInput& to_input, Scene& scene)
     }
 }
 
-void note_unsettled_search(Scene& scene) {
+void note_doubted_objects(Scene& scene) {
     const auto doubted = std::count_if(scene.objects.begin(), scene.objects.end(),
                                        [](const Object& o) { return o.agreement < 0.5; });
     if (doubted == 0) return;
@@ -221,9 +221,9 @@ void note_unsettled_search(Scene& scene) {
                                        [](const Object& o) { return !o.grounded; });
     const bool one = doubted == 1;
     scene.notes.push_back("Of " + io::counted(static_cast<std::uint64_t>(movable), "object") +
-                          " that can move " + std::to_string(doubted) + (one ? " was" : " were") +
-                          " found by less than half of the searches: " + (one ? "its" : "their") +
-                          " parts may belong together otherwise, as another seed may show.");
+                          " that can move " + std::to_string(doubted) + (one ? " is" : " are") +
+                          " likelier a piece of a thing, or several, than one thing: look at " +
+                          (one ? "it" : "them") + ", and correct what is wrong.");
 }
 
 // An object of this share of all parts, and this many, is hardly one thing.
@@ -356,7 +356,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     const std::string light = light_density_note(scene.density_kg_m3);
     if (!light.empty()) scene.notes.push_back(light);
     note_corrections(scene);
-    note_unsettled_search(scene);
+    note_doubted_objects(scene);
     note_crowded_objects(scene);
     const std::string upright = upright_pieces_note(parts, objects, to_input);
     if (!upright.empty()) scene.notes.push_back(upright);

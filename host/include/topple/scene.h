@@ -185,7 +185,7 @@ struct Object {
     std::int32_t id = -1;
     std::vector<std::int32_t> primitives;
     bool grounded = false;  // holds the floor, or is fixed to what does
-    // Share of the sampler's chains that found it, but for a tenth of its parts; 1 for the ground.
+    // The probability that it is one thing, whole; 1 for the ground.
     double agreement = 1;
     double mass_kg = 0;
     // Its box along the room's axes (Scene::manhattan_from_input), the third upright: end to end,

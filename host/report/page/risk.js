@@ -100,8 +100,7 @@ const doubtfulJoint = 0.6;
 function howSureText(object) {
   if (object.grounded) return '';
   const share = value => `${Math.max(1, Math.round(100 * value))} %`, parts = [];
-  parts.push(object.agreement >= 0.995 ? 'one thing in all searches'
-    : object.agreement > 0.5 ? `one thing in ${share(object.agreement)} of the searches` : `one thing in only ${share(object.agreement)} of the searches: its parts may belong together otherwise`);
+  if (object.agreement < 0.995) parts.push(`one whole thing: ${share(object.agreement)} likely`);
   if (object.joint_probability < doubtfulJoint) parts.push(`perhaps two things, ${share(1 - object.joint_probability)} likely: look whether its parts ${object.weakest_joint.join(' and ')} are one`);
   const held = {seen: 'seen', near: 'a gap that the scan left is bridged', leaning: 'it leans on what is beside it', hidden: 'not seen', none: 'not seen'}[object.rests_by];
   if (held && object.seen_enough === false) parts.push('what holds it was not seen');
@@ -110,7 +109,7 @@ function howSureText(object) {
   if (mass) parts.push(`mass \u00b1 ${share(mass)}`);
   const barrier = ratio(object.barrier_error_J, object.barrier_J);
   if (barrier) parts.push(barrier >= 1 ? 'barrier within its error of nothing' : `barrier \u00b1 ${share(barrier)}`);
-  return `How sure: ${parts.join('; ')}.`;
+  return parts.length && `How sure: ${parts.join('; ')}.`;
 }
 
 // "a piece of object 5 (86 % likely)"; "" where it is likelier a thing of its own.

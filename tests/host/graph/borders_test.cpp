@@ -190,6 +190,19 @@ TEST(Pieces, HangTogetherByTheLeastLikelyJointOfTwoLargerParts) {
     EXPECT_EQ(parted[2].a, -1);
 }
 
+TEST(Pieces, AreTheLessLikelyWholeThings) {
+    for (const std::uint64_t voxels : {20u, 300u, 5000u}) {
+        double last = 1;
+        for (const double piece : {0.05, 0.2, 0.4, 0.9}) {
+            const double whole = whole_probability({piece, 0}, {}, voxels);
+            EXPECT_LT(whole, last) << piece << " of " << voxels;
+            last = whole;
+        }
+        EXPECT_GT(whole_probability({0.05, 0}, {}, voxels), 0.8);
+        EXPECT_LT(last, 0.2);
+    }
+}
+
 TEST(Pieces, WhatIsKnownIsNoQuestion) {
     const KnownLinks links{{}, {{1, 2}}};
     const std::vector<PieceOf> of =

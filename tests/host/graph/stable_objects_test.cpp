@@ -66,7 +66,6 @@ TEST_P(Objects, LegsGoWithTheTableAndTheCupStaysFree) {
         LaidTable table;
         const Grouping out = grouped(table, table.joints(3, -3), weighing(1, 0, seed));
         EXPECT_THAT(out.group, ElementsAre(-1, 0, 0, 0, 0, 0, 1));
-        EXPECT_THAT(out.agreement, testing::Each(1.0));
     }
 }
 

@@ -183,7 +183,7 @@ TEST_F(PageRisk, has_one_order_in_which_to_act) {
     page.says("harmless", {"none?", "Risk 6.5 \u00b1 1.3 J per walk",
                            "No need to act. To bring its risk below the 0.1 J per event that this "
                            "run tolerates all the same: fix it where it stands"});
-    page.says("high", {"high", "How sure: one thing in only 50 % of the searches",
+    page.says("high", {"high", "How sure: one whole thing: 50 % likely",
                        "Its risk is below the 0.1", "m above the floor"});
 }
 
