@@ -311,7 +311,7 @@ void Carver::judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence) 
                 throw Error(ErrorKind::input, "carving needs more than " +
                                                   std::to_string(max_slots) +
                                                   " blocks of 8x8x8 voxels in detail; use a "
-                                                  "ParseOptions::voxel_m larger than " +
+                                                  "voxel_m (--voxel) larger than " +
                                                   short_number(g_.frame.voxel_m));
             }
             e.free_slots.push_back(static_cast<std::int32_t>(e.voxels.size()));

@@ -62,7 +62,7 @@ void check_memory(const device::Device& device, const VoxelScene::Grids& g, std:
                 "filling: " + std::to_string(leaves) +
                     " blocks of 8x8x8 voxels lie between the scene's surfaces, unseen; they take " +
                     gigabytes(bytes) + ", more than the " + gigabytes(memory) + " of " +
-                    device.info().name + "; use ParseOptions::voxel_m = " +
+                    device.info().name + "; use voxel_m (--voxel) = " +
                     short_number(std::ceil(g.frame.voxel_m * scale * 1100) / 1000) + " or larger");
 }
 
@@ -203,7 +203,7 @@ std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene
         throw Error(ErrorKind::input, "filling: primitive " + std::to_string(highest) +
                                           " is beyond the limit of " +
                                           std::to_string(max_primitives) +
-                                          " primitives; use a larger ParseOptions::voxel_m");
+                                          " primitives; use a larger voxel_m (--voxel)");
     }
     std::vector<bool> fills;
     for (std::int32_t p = 0; p <= highest; ++p)

@@ -112,7 +112,7 @@ LeafTable box_of(const VoxelFrame& frame, const std::array<std::vector<std::int3
             ErrorKind::input,
             "the scene's bounds, " + size + " m, hold " + std::to_string(chosen.box_size()) +
                 " blocks of 8x8x8 voxels, more than the limit of " + std::to_string(max_leaves) +
-                "; use ParseOptions::voxel_m = " +
+                "; use voxel_m (--voxel) = " +
                 short_number(std::ceil(frame.voxel_m * scale * 1100) / 1000) + " or larger");
     }
     return chosen;

@@ -3,7 +3,6 @@
 
 #include "api/c_support.h"
 #include "topple/embed.h"
-#include "topple/option_names.h"
 #include "topple/version.h"
 
 namespace topple::c_api {
@@ -37,12 +36,7 @@ int set(topple_status* status, int code, std::string_view message) noexcept {
 int set(topple_status* status, const Error& error) noexcept {
     constexpr std::array codes{TOPPLE_ERROR_INPUT, TOPPLE_ERROR_USAGE, TOPPLE_ERROR_DEVICE,
                                TOPPLE_ERROR_CANCELLED};
-    const int code = codes[static_cast<std::size_t>(error.kind())];
-    try {
-        return set(status, code, in_words_of(Interface::c, error.what()));
-    } catch (const std::bad_alloc&) {
-        return set(status, code, error.what());
-    }
+    return set(status, codes[static_cast<std::size_t>(error.kind())], error.what());
 }
 
 namespace {

@@ -5,7 +5,6 @@
 #include "api/c_support.h"
 #include "core/number_options.h"
 #include "export/formats.h"
-#include "topple/option_names.h"
 
 namespace topple::c_api {
 namespace {
@@ -75,10 +74,9 @@ int parsed(const topple_options* given_options, topple_result** result, topple_s
         needed(result, "result") = nullptr;
         const topple_options o = known(given_options, defaults(), "options");
         ParseResult done = parse_with(parse_options(o));
-        for (std::string& note : done.scene.notes) {
-            note = in_words_of(Interface::c, note);
-            if (o.log) o.log(TOPPLE_LOG_WARNING, note.c_str(), o.user);
-        }
+        if (o.log)
+            for (const std::string& note : done.scene.notes)
+                o.log(TOPPLE_LOG_WARNING, note.c_str(), o.user);
         *result = new topple_result(std::move(done), o.allocator);
     });
 }

@@ -28,7 +28,6 @@ struct OutOfMemory {
 };
 
 int set(topple_status* status, int code, std::string_view message) noexcept;
-// Its message names options as C does.
 int set(topple_status* status, const Error& error) noexcept;
 
 // Runs `body`, and makes a code and a message of what it throws.

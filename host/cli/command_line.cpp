@@ -21,7 +21,6 @@
 #include "cli/interrupt.h"
 #include "cli/print.h"
 #include "cli/unknown_option.h"
-#include "topple/option_names.h"
 #include "topple/version.h"
 
 namespace topple::cli {
@@ -135,7 +134,7 @@ void print_out_of_memory() noexcept {
 int run_command_line(std::span<const CommandEntry> commands, int argc, char** argv,
                      const std::function<void(const Error&)>& tell) {
     const auto fail = [&](const Error& error) {
-        tell({error.kind(), in_words_of(Interface::command_line, error.what())});
+        tell(error);
         return exit_code(error.kind());
     };
     open_standard_files();

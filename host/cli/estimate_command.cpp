@@ -15,7 +15,6 @@
 #include "points/formats/read_cloud.h"
 #include "scale/estimate.h"
 #include "topple/device.h"
-#include "topple/option_names.h"
 
 namespace topple::cli {
 namespace {
@@ -53,14 +52,14 @@ void print_json(const Estimate& e) {
         {"ground_m2", e.ground_m2},
         {"box_voxels", e.box_voxels},
         {"surface_voxels", e.surface_voxels},
-        {"unit_hint", in_words_of(Interface::command_line, e.unit_hint)},
+        {"unit_hint", e.unit_hint},
         {"seconds", e.seconds},
         {"processor_s", e.processor_s},
         {"probe_s", e.probe_s},
         {"least_bytes", e.least_bytes},
         {"memory_bytes", e.memory_bytes},
         {"allowed_bytes", e.allowed_bytes},
-        {"refusal", in_words_of(Interface::command_line, e.refusal)},
+        {"refusal", e.refusal},
         {"work_bytes", e.work_bytes},
         {"output_bytes", e.output_bytes},
     };
@@ -81,8 +80,7 @@ int run(EstimateArguments& a) {
                   static_cast<unsigned long long>(e.frames), static_cast<double>(e.points) / 1e6);
         else
             print("input    %llu points\n", static_cast<unsigned long long>(e.points));
-        if (!e.unit_hint.empty())
-            print("unit     %s\n", in_words_of(Interface::command_line, e.unit_hint).c_str());
+        if (!e.unit_hint.empty()) print("unit     %s\n", e.unit_hint.c_str());
         print("surface  about %.3g m2\n", e.surface_m2);
         if (e.tiled)
             print("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);
@@ -95,8 +93,7 @@ int run(EstimateArguments& a) {
             print("limit    %s\n",
                   limit_text(e, io::can_stream(a.input), a.options.max_memory_bytes).c_str());
         else if (!e.refusal.empty())
-            print("limit    the parse would be refused: %s\n",
-                  in_words_of(Interface::command_line, e.refusal).c_str());
+            print("limit    the parse would be refused: %s\n", e.refusal.c_str());
         if (e.work_bytes > 0)
             print("disk     about %s while it works\n", io::bytes_text(e.work_bytes).c_str());
         print("results  about %s%s\n", io::bytes_text(e.output_bytes).c_str(),

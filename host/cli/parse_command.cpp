@@ -27,7 +27,6 @@
 #include "scale/work_files.h"
 #include "topple/device.h"
 #include "topple/export.h"
-#include "topple/option_names.h"
 #include "topple/parse.h"
 
 namespace topple::cli {
@@ -193,13 +192,10 @@ int run(ParseArguments& a) {
         a.options.progress = std::ref(progress);
         a.options.notice = [&](const std::string& line) {
             progress.finish();
-            if (!a.quiet)
-                print_to(stderr, "%s\n", in_words_of(Interface::command_line, line).c_str());
+            if (!a.quiet) print_to(stderr, "%s\n", line.c_str());
         };
         ParseResult result = parse(a.input, a.options);
         keep_peak_as_written(a, result.scene);
-        for (std::string& note : result.scene.notes)
-            note = in_words_of(Interface::command_line, note);
         const std::optional<Worst> before = worst_before(a, out);
         progress("output", 0);
         const auto start = std::chrono::steady_clock::now();

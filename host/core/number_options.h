@@ -18,7 +18,7 @@ namespace topple {
 inline constexpr double least_voxel_m = 0.001, largest_voxel_m = 1;
 
 struct NumberOption {
-    const char* name;  // in C++, C and Python
+    const char* words;  // its name in C++, C and Python, and the command line's
     std::variant<double ParseOptions::*, std::optional<double> ParseOptions::*> member;
     double topple_options::*in_c;  // NaN: none
     double least, most;            // a least of 0 is out of the range itself
@@ -40,24 +40,27 @@ struct NumberOption {
 };
 
 inline constexpr NumberOption number_options[] = {
-    {"voxel_m", &ParseOptions::voxel_m, &topple_options::voxel_m, least_voxel_m, largest_voxel_m,
-     true},
-    {"unit_m", &ParseOptions::unit_m, &topple_options::unit_m, 1e-6, 1e6},
-    {"density_kg_m3", &ParseOptions::density_kg_m3, &topple_options::density_kg_m3, 0, 30000},
-    {"contents_kg_m3", &ParseOptions::contents_kg_m3, &topple_options::contents_kg_m3, 0, 30000,
-     true},
-    {"friction", &ParseOptions::friction, &topple_options::friction, 0, 10},
-    {"wind_m_s", &ParseOptions::wind_m_s, &topple_options::wind_m_s, 0, 150},
-    {"wind_from_deg", &ParseOptions::wind_from_deg, &topple_options::wind_from_deg, -360, 360},
-    {"pga_m_s2", &ParseOptions::pga_m_s2, &topple_options::pga_m_s2, 0, 50},
-    {"floor_amplification", &ParseOptions::floor_amplification,
+    {"voxel_m (--voxel)", &ParseOptions::voxel_m, &topple_options::voxel_m, least_voxel_m,
+     largest_voxel_m, true},
+    {"unit_m (--unit)", &ParseOptions::unit_m, &topple_options::unit_m, 1e-6, 1e6},
+    {"density_kg_m3 (--density)", &ParseOptions::density_kg_m3, &topple_options::density_kg_m3, 0,
+     30000},
+    {"contents_kg_m3 (--contents)", &ParseOptions::contents_kg_m3, &topple_options::contents_kg_m3,
+     0, 30000, true},
+    {"friction (--friction)", &ParseOptions::friction, &topple_options::friction, 0, 10},
+    {"wind_m_s (--wind)", &ParseOptions::wind_m_s, &topple_options::wind_m_s, 0, 150},
+    {"wind_from_deg (--wind-from)", &ParseOptions::wind_from_deg, &topple_options::wind_from_deg,
+     -360, 360},
+    {"pga_m_s2 (--pga)", &ParseOptions::pga_m_s2, &topple_options::pga_m_s2, 0, 50},
+    {"floor_amplification (--floor-amplification)", &ParseOptions::floor_amplification,
      &topple_options::floor_amplification, 0, 20},
-    {"stability_level", &ParseOptions::stability_level, &topple_options::stability_level, 0, 10,
-     true},
-    {"tolerable_J", &ParseOptions::tolerable_J, &topple_options::tolerable_J, 0, 1e9},
+    {"stability_level (--stability-level)", &ParseOptions::stability_level,
+     &topple_options::stability_level, 0, 10, true},
+    {"tolerable_J (--tolerable)", &ParseOptions::tolerable_J, &topple_options::tolerable_J, 0, 1e9},
     // Tiles hold at least a block, tiles::block_edge_m.
-    {"tile_m", &ParseOptions::tile_m, &topple_options::tile_m, 5, 1000, true},
-    {"grouping_time_s", &ParseOptions::grouping_time_s, &topple_options::grouping_time_s, 0, 86400},
+    {"tile_m (--tile)", &ParseOptions::tile_m, &topple_options::tile_m, 5, 1000, true},
+    {"grouping_time_s (--grouping-time)", &ParseOptions::grouping_time_s,
+     &topple_options::grouping_time_s, 0, 86400},
 };
 
 }  // namespace topple

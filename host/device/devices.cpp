@@ -87,7 +87,7 @@ std::shared_ptr<Device> open_device(const std::string& backend, unsigned threads
         check_driver(Backend::vulkan);
         return open_vulkan();
     }
-    throw Error(ErrorKind::usage, "open_device(): backend " + backend +
+    throw Error(ErrorKind::usage, "backend (--backend) " + backend +
                                       " is unknown; take auto, native, opencl or vulkan");
 }
 

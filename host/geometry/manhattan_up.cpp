@@ -48,19 +48,19 @@ constexpr double contradicted_degrees = 30, contradicted_log_odds = 3, rolled_sh
 
 constexpr auto seen_from_above =
     "Up was taken to be across a plane that the camera looks straight at, as from above; if it is "
-    "a wall, say where up is by ParseOptions::up.";
+    "a wall, say where up is by up (--up).";
 constexpr auto by_looks =
     "Nothing in the input says where up is, and it is not z: it was chosen by how the surfaces "
-    "lie; if it is wrong, say where up is by ParseOptions::up.";
+    "lie; if it is wrong, say where up is by up (--up).";
 constexpr auto either_side =
     "Nothing in the scan shows which side of its level surfaces is up: z's was taken; if it is "
-    "wrong, say where up is by ParseOptions::up.";
+    "wrong, say where up is by up (--up).";
 constexpr auto by_walls =
     "No level surface was found: up is the direction along the upright ones that is nearest to the "
-    "camera's; if it is wrong, say where up is by ParseOptions::up.";
+    "camera's; if it is wrong, say where up is by up (--up).";
 constexpr auto not_found =
     "Up could not be found, as no large level or upright surface was seen: it is the camera's or "
-    "the input's own; if it is wrong, say where up is by ParseOptions::up.";
+    "the input's own; if it is wrong, say where up is by up (--up).";
 
 double degrees_between(const Vec3& a, const Vec3& b) {
     return std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * 180 / std::numbers::pi;
@@ -248,7 +248,7 @@ std::string text_of(const Vec3& v) {
 
 std::string two_ups(const Vec3& taken, const Vec3& other) {
     return "Two directions may be up: " + text_of(taken) + ", which was taken, and " +
-           text_of(other) + "; say which it is by ParseOptions::up.";
+           text_of(other) + "; say which it is by up (--up).";
 }
 
 // Where up is by the scan itself.
@@ -261,8 +261,7 @@ UpChoice with_format(const Vec3& up, const Vec3& format_up, bool manhattan) {
     if (degrees_between(up, format_up) <= contradicted_degrees) return {up, "format", ""};
     return {up, manhattan ? "manhattan" : "dominant-plane",
             "By its format the file has " + text_of(format_up) + " up, but its surfaces show " +
-                text_of(up) +
-                ", which was taken; if it is wrong, say where up is by ParseOptions::up."};
+                text_of(up) + ", which was taken; if it is wrong, say where up is by up (--up)."};
 }
 
 FoundUp find_up(const Seen& seen, const std::vector<Vec3>& directions,

@@ -100,7 +100,7 @@ std::vector<PlaneFitter::Tile> PlaneFitter::make_tiles() const {
                                                    std::to_string(grid_.x[cell_[first]]) +
                                                    " do not fit the device's largest binding of " +
                                                    std::to_string(binding) +
-                                                   " bytes; use a larger ParseOptions::voxel_m");
+                                                   " bytes; use a larger voxel_m (--voxel)");
             }
             tile = {first, first + count, lower(std::int64_t{grid_.x[cell_[first]]} - plane_radius),
                     lower(std::int64_t{grid_.x[cell_[first + count - 1]]} + plane_radius + 1)};

@@ -65,7 +65,7 @@ CellPacking packing_of(const CloudView& cloud, const Axes& p, double cell_m, Thr
                             " to " + short_number(range[a][1]) + " m, more than " +
                             std::to_string(max_cells_per_axis) + " cells of " +
                             short_number(cell_m) +
-                            " m; remove stray points or use a larger ParseOptions::voxel_m");
+                            " m; remove stray points or use a larger voxel_m (--voxel)");
         }
         lowest[a] = static_cast<std::int64_t>(lo);
         highest[a] = static_cast<std::int64_t>(hi);

@@ -62,7 +62,7 @@ class ShellDepths {
             throw Error(ErrorKind::input, "what is said to be hollow spans " +
                                               std::to_string(voxels) + " voxels, of " +
                                               std::to_string(most_voxels) +
-                                              " at most; use a larger ParseOptions::voxel_m");
+                                              " at most; use a larger voxel_m (--voxel)");
         share_.assign(voxels, 0);
         for (const HollowPiece& p : pieces) share_[index(p.at)] += p.share;
         find_surface();

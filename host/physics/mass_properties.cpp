@@ -88,7 +88,7 @@ std::array<std::int32_t, 3> origin_of(const SolidCells& cells) {
                                               std::to_string(std::int64_t{*high} - *low + 1) +
                                               " voxels along axis " + std::to_string(axis) +
                                               ", more than " + std::to_string(index_extent) +
-                                              "; use a larger ParseOptions::voxel_m");
+                                              "; use a larger voxel_m (--voxel)");
         }
     }
     return origin;

@@ -96,7 +96,7 @@ void check_export(const ExportOptions& options) {
     std::string known;
     for (const exports::Format& format : exports::formats()) {
         if (!known.empty()) known += ", ";
-        known.append("ExportOptions::").append(format.name);
+        known.append(format.name).append(" (--").append(format.name).append(")");
         const std::filesystem::path& path = options.*format.path;
         if (path.empty()) continue;
         any = true;

@@ -42,8 +42,7 @@ ParseResult run(const std::string& source, const ParseOptions& options, Find fin
 // Options that are about files, of a scan in memory.
 void refuse_file_options(const ParseOptions& options) {
     if (!options.cache_file.empty())
-        throw Error(ErrorKind::usage, "ParseOptions::cache_file " +
-                                          io::path_text(options.cache_file) +
+        throw Error(ErrorKind::usage, "cache_file (--cache) " + io::path_text(options.cache_file) +
                                           ": a cache is kept of a file or folder, and the scan is "
                                           "in memory; leave it out, or parse its file");
     if (!options.work_folder.empty())
@@ -56,7 +55,7 @@ void refuse_file_options(const ParseOptions& options) {
 void refuse_tiles(const ParseOptions& options) {
     if (options.tile_m == 0) return;
     throw Error(ErrorKind::usage,
-                "ParseOptions::tile_m " + short_number(options.tile_m) +
+                "tile_m (--tile) " + short_number(options.tile_m) +
                     ": only clouds in files are parsed in blocks (.ply, .pcd, .las and .xyz); "
                     "leave it out");
 }

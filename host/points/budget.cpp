@@ -28,8 +28,8 @@ constexpr std::chrono::milliseconds between_looks{25};
 // input's, which the system drops where it needs them.
 constexpr std::uint64_t program_bytes = std::uint64_t{64} << 20;
 
-constexpr const char* of_options = "of ParseOptions::max_memory_bytes";
-constexpr const char* with_options = " with ParseOptions::max_memory_bytes";
+constexpr const char* of_options = "of max_memory_bytes (--max-memory)";
+constexpr const char* with_options = " with max_memory_bytes (--max-memory)";
 
 // All parses that run in this process: what they may take together, beside what it had before them.
 struct Running {

@@ -32,7 +32,7 @@ class Budget {
     std::uint64_t bytes() const { return bytes_; }
     // Whether it is the caller's, not this class's.
     bool asked() const { return of_ == Of::options; }
-    // Whose bound that is, to follow after a number of bytes: "of ParseOptions::max_memory_bytes".
+    // Whose bound that is, to follow after a number of bytes: "of max_memory_bytes (--max-memory)".
     std::string whose() const;
     // Seconds of the processor that an input of its size may take before a user is told.
     double seconds() const { return seconds_; }
@@ -44,7 +44,7 @@ class Budget {
     // ...: allow that much, or <mend>".
     void check(const std::string& what, std::uint64_t need_bytes, const std::string& mend) const;
     // What the stages are about to work on, "1.2 million voxels of 0.02 m", and how it would be
-    // less: "use ParseOptions::voxel_m = 0.05"; for messages. expected_s: about how long it takes,
+    // less: "use voxel_m (--voxel) = 0.05"; for messages. expected_s: about how long it takes,
     // which is told at once where that is long.
     void begin_work(const std::string& what, const std::string& mend, double expected_s);
 
@@ -76,7 +76,7 @@ void check_memory(const std::string& what, std::uint64_t need_bytes, const Parse
                   const std::string& mend);
 
 // What a parse with these options may take on this thread; UINT64_MAX: no limit. In words: "1.02
-// GiB of ParseOptions::max_memory_bytes".
+// GiB of max_memory_bytes (--max-memory)".
 std::uint64_t memory_bound(const ParseOptions& options);
 std::string memory_bound_text(const ParseOptions& options);
 

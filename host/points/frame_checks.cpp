@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/pose_mends.h"
 #include "io/text.h"
 
 namespace topple {
@@ -12,22 +11,30 @@ namespace {
 
 using geometry::PoseConvention;
 
-// What poses are in a convention, and what gives those that are meant.
+// What poses are in a convention, and what gives those that are meant, in words and in NumPy's.
 struct ConventionText {
     const char *words, *mend;
 };
 constexpr std::array<ConventionText, geometry::pose_conventions> texts{{
     {"camera to world", "each pose as it is"},
-    {"world to camera", pose_mends::inverse.words},
-    {"of a camera with y up and z back, as in OpenGL, Blender and ARKit", pose_mends::turned.words},
+    {"world to camera", "the inverse of each pose (np.linalg.inv(pose))"},
+    {"of a camera with y up and z back, as in OpenGL, Blender and ARKit",
+     "each pose with its second and third columns negated (pose @ np.diag([1, -1, -1, 1]))"},
     {"world to camera, with the camera's y up and z back, as OpenGL's view matrix",
-     pose_mends::inverse_turned.words},
-    {"of a body with x ahead, y left and z up, as in ROS", pose_mends::reordered.words},
+     "the inverse of each pose, with its second and third columns negated (np.linalg.inv(pose) @ "
+     "np.diag([1, -1, -1, 1]))"},
+    {"of a body with x ahead, y left and z up, as in ROS",
+     "each pose with its columns in this order: the second negated, the third negated, the first, "
+     "the fourth (pose @ [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])"},
     {"world to body, with x ahead, y left and z up, as in ROS",
-     pose_mends::inverse_reordered.words},
-    {"made of quaternions with w first", pose_mends::w_last.words},
+     "the inverse of each pose, with its columns in this order: the second negated, the third "
+     "negated, the first, the fourth (np.linalg.inv(pose) @ [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, "
+     "0, 0], [0, 0, 0, 1]])"},
+    {"made of quaternions with w first",
+     "poses of their quaternions as x, y, z, w (q[[1, 2, 3, 0]])"},
     {"of transposed rotations (column-major, or quaternions with x, y, z negated)",
-     pose_mends::transposed.words},
+     "each pose with its 3 x 3 rotation transposed, as matrices are row-major (pose[:3, :3] = "
+     "pose[:3, :3].T)"},
 }};
 
 std::string percent(double share) {

@@ -208,7 +208,7 @@ Observation observe_folder(device::Device& device, const std::filesystem::path& 
                            const ParseOptions& options) {
     if (options.unit_m != 1) {
         throw Error(ErrorKind::usage,
-                    "ParseOptions::unit_m is for point clouds, meshes and maps; depth frames have "
+                    "unit_m (--unit) is for point clouds, meshes and maps; depth frames have "
                     "their unit in intrinsics.json, as depth_scale");
     }
     io::FrameSequence frames = io::FrameSequence::open(folder);
@@ -221,7 +221,7 @@ Observation observe_frames(device::Device& device, const FramesView& frames,
                            const ParseOptions& options) {
     if (options.unit_m != 1) {
         throw Error(ErrorKind::usage,
-                    "ParseOptions::unit_m is for files; depth frames have their unit in their "
+                    "unit_m (--unit) is for files; depth frames have their unit in their "
                     "intrinsics, as depth_scale");
     }
     CallerFrames given(frames);

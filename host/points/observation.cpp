@@ -156,7 +156,7 @@ Observation observe_view(device::Device& device, const CloudView& cloud,
                          const ParseOptions& options) {
     if (options.unit_m != 1) {
         throw Error(ErrorKind::usage,
-                    "ParseOptions::unit_m is for files; scale a cloud in memory to metres before "
+                    "unit_m (--unit) is for files; scale a cloud in memory to metres before "
                     "it is parsed");
     }
     Observation out;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "core/number_text.h"
@@ -32,18 +33,20 @@ std::string text_of(double value) {
 // in which points that extend so far would be those of a table or a room; "" where there is none.
 std::string other_units(double extent_m, bool from_file, double least_m = least_table_m) {
     std::string out;
-    for (const auto& [unit, unit_m] :
-         {std::pair("mm", 0.001), {"cm", 0.01}, {"inches", 0.0254}, {"feet", 0.3048}}) {
+    for (const auto& [unit, unit_m, option] :
+         {std::tuple("mm", 0.001, "unit_m = 0.001 (--unit mm)"),
+          {"cm", 0.01, "unit_m = 0.01 (--unit cm)"},
+          {"inches", 0.0254, "unit_m = 0.0254 (--unit in)"},
+          {"feet", 0.3048, "unit_m = 0.3048 (--unit ft)"}}) {
         const double then_m = extent_m * unit_m;
         if (then_m < least_m || then_m > largest_room_m) continue;
         const bool first = out.empty();
         out += first ? "if the coordinates are in " : ", in ";
         out += unit;
         if (from_file)
-            (out += first ? ", say ParseOptions::unit_m = " : " ParseOptions::unit_m = ") +=
-                io::short_number(unit_m);
+            out.append(first ? ", say " : " ").append(option);
         else
-            (out += first ? ", multiply them by " : " by ") += io::short_number(unit_m);
+            out.append(first ? ", multiply them by " : " by ").append(io::short_number(unit_m));
         out += " (" + io::two_digits(then_m) + " m)";
     }
     return out;
@@ -132,7 +135,7 @@ std::string small_extent_hint(double extent_m, ScanOrigin origin) {
                         : origin == ScanOrigin::frames_in_memory ? "depth_scale of the intrinsics"
                         : origin == ScanOrigin::cloud_in_memory
                             ? "that the coordinates are metres, which they must be in memory"
-                            : "ParseOptions::unit_m";
+                            : "unit_m (--unit)";
     return "it all extends over " + text_of(extent_m) + " m: check " + check;
 }
 

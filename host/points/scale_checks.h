@@ -65,7 +65,7 @@ auto with_unit_hint(double extent_m, ScanOrigin origin, const Find& find) {
 // are as far apart as they were made: INFINITY.
 std::string unit_hint(const CloudView& cloud, double spacing_m, ScanOrigin origin);
 // Of what extends over less than things in a room do: "it all extends over X m: check
-// ParseOptions::unit_m", or what else gives the unit of such an input; else "".
+// unit_m (--unit)", or what else gives the unit of such an input; else "".
 std::string small_extent_hint(double extent_m, ScanOrigin origin);
 // The same as a note of a scene from there, which else shows shards of nothing in particular.
 void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::string>& notes);

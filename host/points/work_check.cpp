@@ -45,7 +45,7 @@ std::string mend(const OnePiece& piece, double voxel_m, const Budget& budget) {
         const OnePiece then = with_voxels(piece, h / voxel_m);
         if (h > 1.2 * voxel_m && one_piece_peak(then) <= static_cast<double>(budget.bytes()) &&
             one_piece_seconds(then) <= 2 * budget.seconds())
-            return "use ParseOptions::voxel_m = " + short_number(h);
+            return "use voxel_m (--voxel) = " + short_number(h);
     }
     return "give a smaller part";
 }
@@ -109,9 +109,9 @@ void check_memory_of(const Observation& input, double voxel_m, const ParseOption
     check_memory(std::to_string(cloud.size()) + " points at voxels of " + short_number(voxel_m) +
                      " m may need",
                  need, options,
-                 std::string("use a larger ParseOptions::voxel_m") +
+                 std::string("use a larger voxel_m (--voxel)") +
                      (input.origin == ScanOrigin::cloud_file
-                          ? ", or ParseOptions::tile_m = 5 to have it parsed in blocks"
+                          ? ", or tile_m = 5 (--tile 5) to have it parsed in blocks"
                           : ""));
 }
 
@@ -124,7 +124,7 @@ void fail_without_surface(const Observation& input, const std::string& source, d
         source + ": " + io::counted(input.cloud.size(), "point") +
             (input.cloud.size() == 1 ? " was" : " were") +
             " found, but no surface of them fills the " + std::to_string(least_voxels) +
-            " voxels that a solid takes; give a denser scan, or a smaller ParseOptions::voxel_m" +
+            " voxels that a solid takes; give a denser scan, or a smaller voxel_m (--voxel)" +
             (scale.empty() ? "" : "; " + scale));
 }
 

@@ -7,7 +7,6 @@
 #include "child/confine.h"
 #include "core/printable.h"
 #include "python.h"
-#include "topple/option_names.h"
 #include "topple/stages.h"
 #include "topple/version.h"
 
@@ -30,8 +29,7 @@ void bind_error(py::module_& module) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const Error& error) {
-            py::object made = py::reinterpret_borrow<py::object>(type)(
-                in_words_of(Interface::python, error.what()));
+            py::object made = py::reinterpret_borrow<py::object>(type)(error.what());
             made.attr("kind") = name_of(error.kind());
             PyErr_SetObject(type, made.ptr());
         }

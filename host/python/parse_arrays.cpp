@@ -7,7 +7,6 @@
 #include "arrays.h"
 #include "busy.h"
 #include "core/number_options.h"
-#include "topple/option_names.h"
 
 namespace topple::python {
 namespace {
@@ -30,10 +29,7 @@ class Caller {
     // What may be worth an end before the parse's own, as poses that make nonsense.
     void notice(const std::string& line) {
         if (!mine() || stop_) return;
-        ask([&] {
-            py::module_::import("topple._arrays")
-                .attr("warn")(in_words_of(Interface::python, line));
-        });
+        ask([&] { py::module_::import("topple._arrays").attr("warn")(line); });
     }
     // Whether it was told to stop, by the callback or by a signal such as Ctrl-C.
     bool cancelled() {
@@ -97,7 +93,6 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
         throw;
     }
     caller.rethrow();
-    for (std::string& note : out->result.scene.notes) note = in_words_of(Interface::python, note);
     return out;
 }
 
@@ -139,8 +134,10 @@ std::shared_ptr<Parsed> parse_frames(const std::vector<PyFrame>& frames, const p
 
 void bind_parse(py::module_& module) {
     py::class_<ParseOptions> bound(module, "Options");
-    for (const NumberOption& option : number_options)
-        std::visit([&](auto member) { bound.def_readwrite(option.name, member); }, option.member);
+    for (const NumberOption& option : number_options) {
+        const std::string words = option.words, name = words.substr(0, words.find(' '));
+        std::visit([&](auto member) { bound.def_readwrite(name.c_str(), member); }, option.member);
+    }
     bound.def(py::init<>())
         .def_readwrite("up", &ParseOptions::up)
         .def_readwrite("disturbances", &ParseOptions::disturbances)

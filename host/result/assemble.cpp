@@ -320,7 +320,7 @@ std::string light_density_note(double density_kg_m3) {
     if (density_kg_m3 >= lightest_kg_m3) return {};
     return "The density of " + io::short_number(density_kg_m3) +
            " kg/m\u00b3 is less than that of the lightest foam; if it is in g/cm\u00b3, give "
-           "ParseOptions::density_kg_m3 1000 times as large.";
+           "density_kg_m3 (--density) 1000 times as large.";
 }
 
 void record_run(const device::Device& device, const ParseOptions& options, double voxel_m,

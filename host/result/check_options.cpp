@@ -23,7 +23,7 @@ void check_range(const std::string& option, double value, double lowest, double 
 void check(const NumberOption& option, const ParseOptions& options) {
     const std::optional<double> value = option.of(options);
     if (!value || (option.may_be_0 && *value == 0)) return;
-    check_range(std::string("ParseOptions::") + option.name, *value, option.least, option.most);
+    check_range(option.words, *value, option.least, option.most);
 }
 
 }  // namespace
@@ -31,38 +31,38 @@ void check(const NumberOption& option, const ParseOptions& options) {
 void check_options(const ParseOptions& o) {
     for (const NumberOption& option : number_options) check(option, o);
     if (o.up)
-        check_range("ParseOptions::up: its length,", std::hypot((*o.up)[0], (*o.up)[1], (*o.up)[2]),
-                    1e-6, 1e6);
-    check_range("ParseOptions::walks", o.walks, 1, 1e6);
+        check_range("up (--up): its length,", std::hypot((*o.up)[0], (*o.up)[1], (*o.up)[2]), 1e-6,
+                    1e6);
+    check_range("walks (--walks)", o.walks, 1, 1e6);
     if (o.accelerogram) {
-        check_range("ParseOptions::accelerogram: step_s", o.accelerogram->step_s, 1e-5, 0.5);
+        check_range("accelerogram (--accelerogram): step_s", o.accelerogram->step_s, 1e-5, 0.5);
         double sum = 0;  // not finite if one of them isn't
         for (const auto* component :
              {&o.accelerogram->m_s2, &o.accelerogram->across_m_s2, &o.accelerogram->up_m_s2}) {
             if (!component->empty() && component->size() != o.accelerogram->m_s2.size())
-                throw Error(
-                    ErrorKind::usage,
-                    "ParseOptions::accelerogram: its components have different numbers of samples");
+                throw Error(ErrorKind::usage,
+                            "accelerogram (--accelerogram): its components have different numbers "
+                            "of samples");
             for (const double a : *component) sum += std::abs(a);
         }
-        check_range("ParseOptions::accelerogram: its peak in m/s^2,",
+        check_range("accelerogram (--accelerogram): its peak in m/s^2,",
                     std::isfinite(sum) ? o.accelerogram->peak_m_s2() : NAN, 0, 100);
     }
     if (o.hazard) {
         if (const auto wrong = o.hazard->fault())
-            throw Error(ErrorKind::usage, "ParseOptions::hazard: " + *wrong);
+            throw Error(ErrorKind::usage, "hazard (--hazard): " + *wrong);
     }
     if (const auto wrong = fault_of(o.corrections))
-        throw Error(ErrorKind::usage, "ParseOptions::corrections: " + *wrong);
+        throw Error(ErrorKind::usage, "corrections (--corrections): " + *wrong);
     for (auto name = o.disturbances.begin(); name != o.disturbances.end(); ++name) {
         safety::disturbance_kind(*name);
         if (std::find(o.disturbances.begin(), name, *name) != name)
-            throw Error(ErrorKind::usage,
-                        "ParseOptions::disturbances: " + *name + " is given twice; name each once");
+            throw Error(ErrorKind::usage, "disturbances (--disturbance): " + *name +
+                                              " is given twice; name each once");
     }
     for (std::size_t n = 0; n < o.motions.size(); ++n) {
         if (!o.motions[n])
-            throw Error(ErrorKind::usage, "ParseOptions::motions: number " + std::to_string(n) +
+            throw Error(ErrorKind::usage, "motion (--motion): number " + std::to_string(n) +
                                               " is null; give what read_motion() returns, or leave "
                                               "it out");
     }

@@ -39,7 +39,7 @@ void note_nothing_judged(Scene& scene) {
         scene.notes.begin(),
         "Nothing was judged, because " + why_nothing(scene) +
             ". That does not say that the room is safe. " + up_text(scene) +
-            ": if that is wrong, give ParseOptions::up; if sizes are, ParseOptions::unit_m, or "
+            ": if that is wrong, give up (--up); if sizes are, unit_m (--unit), or "
             "the depth_scale of depth frames. Else scan from more sides, or tell by corrections "
             "what is furniture.");
 }

@@ -105,7 +105,7 @@ std::string upright_pieces_note(const SolidParts& parts, const ObjectStage& obje
     }
     if (boxes.size() > listed) text += "; and smaller ones";
     return text +
-           ". Of what is one, say `apart` in ParseOptions::corrections, with a spot on it "
+           ". Of what is one, say `apart` in corrections (--corrections), with a spot on it "
            "and one on the floor.";
 }
 

@@ -21,7 +21,7 @@ Columns::Columns(const SolidCells& cells) : cells_(cells) {
         throw Error(ErrorKind::input,
                     "the scene spans " + std::to_string(ni_) + " x " + std::to_string(nj_) +
                         " voxels, more than the 2^28 columns that the disturbance "
-                        "fields can take; use a larger ParseOptions::voxel_m");
+                        "fields can take; use a larger voxel_m (--voxel)");
     }
     first_.assign(static_cast<std::size_t>(ni_ * nj_ + 1), 0);
     for (std::size_t c = 0; c < n; ++c)

@@ -28,7 +28,7 @@ const DisturbanceKind& disturbance_kind(std::string_view name) {
     std::vector<std::string> known;
     for (const DisturbanceKind* kind : disturbance_kinds()) known.emplace_back(kind->name);
     std::string message =
-        "ParseOptions::disturbances " + std::string(name) + ": expected " + listed(known);
+        "disturbances (--disturbance) " + std::string(name) + ": expected " + listed(known);
     for (const DisturbanceKind* kind : disturbance_kinds()) {
         const auto& words = kind->words;
         const bool meant = std::ranges::any_of(

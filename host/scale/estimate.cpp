@@ -381,7 +381,7 @@ void check_work(const Estimate& e, const std::filesystem::path& input, Budget& b
     const std::string source = io::path_text(input);
     if (e.tiled)
         return budget.check(source + ": in blocks it would need about", e.least_bytes,
-                            "use a larger ParseOptions::voxel_m");
+                            "use a larger voxel_m (--voxel)");
     if (e.voxel_m > 0) topple::check_work(source, piece_of(e), e.voxel_m, budget);
 }
 

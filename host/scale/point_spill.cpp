@@ -113,7 +113,7 @@ void PointSpill::add(const PointCloud& portion, const std::string& source) {
                                 source + ": the first " + std::to_string(points_) +
                                     " points lie in " + std::to_string(bins_.size()) +
                                     " cubes of 5 m, too sparsely for surfaces; if the unit is the "
-                                    "millimetre, say ParseOptions::unit_m = 0.001");
+                                    "millimetre, say unit_m = 0.001 (--unit mm)");
                 }
             }
             open = &bins_[at->second];

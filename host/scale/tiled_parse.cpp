@@ -122,7 +122,7 @@ double find_spacing(const tiles::SpilledPoints& points, const fs::path& input) {
     if (spacing > sparsest_m)
         io::fail(input, "its points are " + io::short_number(spacing) + " m apart, more than the " +
                             io::short_number(sparsest_m) +
-                            " m at which surfaces can be found; check ParseOptions::unit_m, or "
+                            " m at which surfaces can be found; check unit_m (--unit), or "
                             "give a denser scan");
     return spacing;
 }
@@ -190,7 +190,7 @@ tiles::Layout find_layout(const SharedWork& shared, const tiles::SpilledPoints& 
         if (layout.blocks.empty())
             io::fail(input, io::counted(points.points(), "point") +
                                 " were found, but nowhere enough of them for a surface; give a "
-                                "denser scan, or a larger ParseOptions::voxel_m");
+                                "denser scan, or a larger voxel_m (--voxel)");
         tiles::write_layout(shared.folder, layout);
         return layout;
     });
@@ -225,7 +225,7 @@ void check_memory_of(const tiles::Layout& layout, const fs::path& input,
     const double need = std::max(whole_bytes(all), block_bytes(tiles::largest_block(layout)));
     check_memory(io::path_text(input) + ": in blocks at voxels of " +
                      io::short_number(layout.voxel_m) + " m it would need about",
-                 static_cast<std::uint64_t>(need), options, "use a larger ParseOptions::voxel_m");
+                 static_cast<std::uint64_t>(need), options, "use a larger voxel_m (--voxel)");
 }
 
 ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
@@ -246,7 +246,7 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
     if (parts.model.empty())
         io::fail(input, "no surface in it fills the " + std::to_string(least_voxels) +
                             " voxels that a solid takes; give a denser scan, or a smaller "
-                            "ParseOptions::voxel_m");
+                            "voxel_m (--voxel)");
     ParseResult result;
     Scene& scene = result.scene;
     scene.source = input.string();

@@ -111,7 +111,7 @@ TEST_F(Input, in_another_unit_than_metres) {
     }
     put("room.xyz", room_in(1));
     EXPECT_THAT(topple("parse room.xyz -o out --unit cm").out,
-                HasSubstr("Note: It all extends over 0.032 m: check --unit.\n"));
+                HasSubstr("Note: It all extends over 0.032 m: check unit_m (--unit).\n"));
     put_sequence("frames", 2);
     fails(2, "parse frames -o other --quiet --unit mm", {"--unit", "depth_scale"});
 }

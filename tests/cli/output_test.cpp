@@ -78,13 +78,14 @@ TEST_F(Output, says_so_where_a_peak_is_meant_in_another_unit) {
             .out;
     };
     EXPECT_THAT(parse("0.3", "weak"),
-                HasSubstr("Note: --pga 0.3 is 0.031 g (light shaking, intensity "
-                          "IV): for 0.3 g give --pga 2.94."));
+                HasSubstr("Note: pga_m_s2 (--pga) = 0.3 is 0.031 g (light shaking, intensity "
+                          "IV): for 0.3 g give pga_m_s2 (--pga) = 2.94."));
     for (const char* pga : {"0.3g", "0.05g", "3g"})  // who writes a unit means it
-        EXPECT_THAT(parse(pga, pga), Not(HasSubstr("give --pga"))) << pga;
-    EXPECT_THAT(parse("30", "stronger"),
-                HasSubstr("Note: --pga 30 is 3.1 g (extreme shaking, intensity X or more), "
-                          "stronger than nearly all that were recorded; for 30 % of g give"));
+        EXPECT_THAT(parse(pga, pga), Not(HasSubstr("give pga_m_s2"))) << pga;
+    EXPECT_THAT(
+        parse("30", "stronger"),
+        HasSubstr("Note: pga_m_s2 (--pga) = 30 is 3.1 g (extreme shaking, intensity X or more), "
+                  "stronger than nearly all that were recorded; for 30 % of g give"));
     EXPECT_NE(bytes_of_file(in("0.3g/scene.json")).find("\"pga_m_s2\": 2.941995"),
               std::string::npos);
 }

@@ -19,7 +19,7 @@ TEST_F(Tiled, says_what_is_wrong_with_a_cloud) {
     put("far.xyz", "1e9 0 0\n");
     fails(1, "parse far.xyz --tile 5 -o out --quiet", {"1e+09"});
     std::filesystem::create_directories(in("frames/depth"));
-    fails(2, "parse frames --tile 5 -o out --quiet", {"--tile 5", "leave it out"});
+    fails(2, "parse frames --tile 5 -o out --quiet", {"tile_m (--tile) 5", "leave it out"});
     fails(1, "parse away.ply --tile 5 -o out --quiet", {"away.ply"});
 }
 
@@ -74,7 +74,7 @@ TEST_F(Tiled, estimates_without_parsing) {
     EXPECT_THAT(limit("4G"), HasSubstr("4 GiB of --max-memory suffice"));
     EXPECT_THAT(limit("1M"), HasSubstr("1 MiB of --max-memory are too few"));
     fails(1, "estimate away.ply --quiet", {"away.ply"});
-    fails(1, "parse plane.xyz --unit mm --quiet", {"plane.xyz", "check --unit"});
+    fails(1, "parse plane.xyz --unit mm --quiet", {"plane.xyz", "check unit_m (--unit)"});
     fails(2, "estimate plane.xyz --voxel -1", {"--voxel -1: expected"});
 }
 

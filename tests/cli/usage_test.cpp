@@ -28,12 +28,12 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
     fails(2, "generate room --kind office --scan glass",
           {"--scan glass: expected walk, sparse, cloud, laser or single"});
     fails(2, "parse plane.xyz --disturbance people",
-          {"--disturbance people: expected human", "for people say human"});
+          {"disturbances (--disturbance) people: expected human", "for people say human"});
     fails(2, "parse plane.xyz --motion a.bvh --motion-unit 0",
           {"--motion-unit 0: expected a number above 0"});
-    fails(2, "parse plane.xyz --threads 100000", {"--threads 100000: at most"});
+    fails(2, "parse plane.xyz --threads 100000", {"threads (--threads) 100000: at most"});
     fails(2, "parse plane.xyz --disturbance human,wind,human",
-          {"--disturbance: human is given twice"});
+          {"disturbances (--disturbance): human is given twice"});
     // Nothing is near this one.
     const Finished far = topple("parse plane.xyz --kaleidoscope");
     EXPECT_THAT(far.err, Not(HasSubstr("did you mean")));
@@ -81,7 +81,7 @@ TEST_F(Usage, refuses_values_before_it_parses) {
             expect_failure(2, {"parse", "plane.xyz", option, value}, {option});
     fails(2, "parse plane.xyz --voxel -1", {"-1"});
     fails(2, "parse plane.xyz --disturbance flood", {"flood", "earthquake"});
-    fails(2, "parse plane.xyz --backend cuda", {"--backend cuda is unknown", "vulkan"});
+    fails(2, "parse plane.xyz --backend cuda", {"backend (--backend) cuda is unknown", "vulkan"});
     // Wrong usage counts before a backend that may be missing.
     fails(2, "parse plane.xyz --backend opencl --voxel 0", {"--voxel"});
     fails(2, "generate scan --frames 0", {"--frames"});

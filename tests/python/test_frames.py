@@ -178,7 +178,7 @@ def test_what_makes_no_sense(depth, points, device):
     refused('usage', 'colours[0]', '(H, W, 3)', **(given | {'colours': np.zeros((18, 12, 16), np.uint8)}))
     refused('input', 'frame 0: colour is 12 x 16', **(given | {'colours': np.zeros((18, 16, 12, 3), np.uint8)}))
     refused('usage', 'unit_m', **(given | {'unit_m': 0.001}))
-    refused('usage', 'tile_m 5: only clouds in files', **(given | {'tile_m': 5}))
+    refused('usage', 'tile_m (--tile) 5: only clouds in files', **(given | {'tile_m': 5}))
     refused('usage', 'cache_file', **(given | {'cache_file': 'cache'}))
     refused('usage', 'viewpoint', **(given | {'viewpoint': [0, 0, 0]}))
     refused('input', 'max_memory_bytes', **(given | {'max_memory_bytes': 1 << 20}))

@@ -82,7 +82,7 @@ def test_the_unit_of_a_record_may_be_given(points, device, tmp_path):
         parsed = topple.parse(points[::6], device=device, disturbances='earthquake', accelerogram=tmp_path / 'quake.txt', **options)
         return next(note for note in parsed.notes if 'accelerogram' in note)
     assert '1 m/s^2' in by(accelerogram_unit='cm/s2')
-    with raises('input', 'quake.txt.*name it with accelerogram_unit: g, m/s2 or cm/s2'):
+    with raises('input', r'quake.txt.*name it with accelerogram_unit \(--accelerogram-unit\): g, m/s2 or cm/s2'):
         by()
     for unit, options in (('ft', {'accelerogram': tmp_path / 'quake.txt'}), ('g', {})):
         with raises('usage', '^accelerogram_unit'):
@@ -113,9 +113,9 @@ def test_what_a_recording_does_not_say_may_be_given(points, device, tmp_path):
     expected = by(motion=plain, motion_rate=np.float32(60))
     odd = by(motion=[walking(tmp_path / 'odd.csv', 0.0312, 0)], motion_rate=60, motion_unit=0.0312, motion_up=(1, 0, 0))
     assert np.abs(expected).max() > 0 and np.allclose(odd, expected, rtol=1e-3, atol=1e-3)
-    for options, words in (({'motion': plain}, r'\(motion_rate\)'), ({'motion': plain, 'motion_rate': 60, 'motion_unit': 10}, 'tall'),
-                           ({'motion': plain, 'motion_rate': 0}, '^motion_rate 0: expected a number above 0'),
-                           ({'motion': plain, 'motion_rate': 60, 'motion_up': (0, 0, 0)}, '^motion_up: expected three numbers, not all zero'),
+    for options, words in (({'motion': plain}, r'motion_rate \(--motion-rate\)'), ({'motion': plain, 'motion_rate': 60, 'motion_unit': 10}, 'tall'),
+                           ({'motion': plain, 'motion_rate': 0}, r'^motion_rate \(--motion-rate\) 0: expected a number above 0'),
+                           ({'motion': plain, 'motion_rate': 60, 'motion_up': (0, 0, 0)}, r'^motion_up \(--motion-up\): expected three numbers, not all zero'),
                            ({'motion_rate': 60}, 'there is no motion')):
         with pytest.raises(topple.Error, match=words):
             topple.parse(points, device=device, **options)
@@ -267,19 +267,19 @@ def test_what_others_hold_is_told_how_to_give(given, words, device):
 
 def test_a_peak_in_another_unit_is_told(points, device):
     notes = topple.parse(points, device=device, disturbances='earthquake', pga_m_s2=0.3).notes
-    assert notes[0] == 'pga_m_s2=0.3 is 0.031 g (light shaking, intensity IV): for 0.3 g give pga_m_s2=2.94.'
+    assert notes[0] == 'pga_m_s2 (--pga) = 0.3 is 0.031 g (light shaking, intensity IV): for 0.3 g give pga_m_s2 (--pga) = 2.94.'
     assert sum('pga' in note for note in notes) == 1
     assert not any('pga' in note for note in quick(points, device, pga_m_s2=0.3).notes)
 
 
 def test_errors_of_options_and_devices(points):
-    for option, value, words in (('tile_m', 5, '^tile_m 5: only clouds in files'), ('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
-                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes: allow that much'),
-                                 ('disturbances', ['wind', 'wind'], '^disturbances: wind is given twice; name each once$'),
-                                 ('disturbances', 'flood', '^disturbances flood: expected human, wind or')):
+    for option, value, words in (('tile_m', 5, r'^tile_m \(--tile\) 5: only clouds in files'), ('friction', -1, r'^friction \(--friction\) -1: expected'), ('wind_from_deg', 400, r'^wind_from_deg \(--wind-from\) 400: '),
+                                 ('max_memory_bytes', 1, r'the 1 B of max_memory_bytes \(--max-memory\): allow that much'),
+                                 ('disturbances', ['wind', 'wind'], r'^disturbances \(--disturbance\): wind is given twice; name each once$'),
+                                 ('disturbances', 'flood', r'^disturbances \(--disturbance\) flood: expected human, wind or')):
         with raises('usage' if words[0] == '^' else 'input', words):
             topple.parse(points, **{option: value})
-    with raises('usage', '^backend abacus is unknown'):
+    with raises('usage', r'^backend \(--backend\) abacus is unknown'):
         topple.parse(points, device='abacus')
     assert 'native' in {d.backend for d in topple.devices() if d.usable}
     assert repr(topple.open_device('native')).startswith('<topple.Device native')
@@ -322,7 +322,7 @@ def test_viewpoints_that_are_not_finite_are_told(points, device):
 def test_points_in_centimetres_are_told(device):
     patch = np.random.default_rng(3).random((2000, 3), np.float32) * np.float32([4, 4, 0.001])
     corners = np.concatenate([patch + np.float32(at) for at in ((0, 0, 0), (120, 0, 0), (0, 120, 0), (0, 0, 120))])
-    with raises('input', r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*or use voxel_m='):
+    with raises('input', r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*or use voxel_m \(--voxel\) = '):
         quick(corners, device, voxel_m=0.02)
 
 
@@ -371,10 +371,10 @@ def test_an_organised_cloud_is_a_frame(device, tmp_path):
 
 
 def test_a_density_in_other_units_is_told(points, device):
-    with pytest.warns(RuntimeWarning, match='give density_kg_m3 1000 times') as warned:
+    with pytest.warns(RuntimeWarning, match=r'give density_kg_m3 \(--density\) 1000 times') as warned:
         notes = quick(points[::6], device, density_kg_m3=0.7).notes
     assert [w.filename for w in warned] == [__file__]
-    assert any('0.7 kg/m³' in note and 'give density_kg_m3 1000 times' in note for note in notes)
+    assert any('0.7 kg/m³' in note and 'give density_kg_m3 (--density) 1000 times' in note for note in notes)
 
 
 def test_a_cache_serves_any_number_of_threads(points, tmp_path):
@@ -396,7 +396,7 @@ def test_options_of_numpy_are_taken(points, result, device):
 
 
 def test_a_cache_is_of_files_and_a_name_of_arrays(points, device, tmp_path):
-    with raises('usage', '^cache_file /nope/x: .*in memory'):
+    with raises('usage', r'^cache_file \(--cache\) /nope/x: .*in memory'):
         quick(points, device, cache_file='/nope/x')
     with pytest.raises(topple.Error, match='name are for points in memory'):
         quick(tmp_path, device, name='desk')

@@ -318,7 +318,7 @@ def test_generates_a_room_that_parses(device, tmp_path):
     scan = topple.generate(tmp_path / 'scan', seed=2, single=True)
     assert sorted(os.listdir(os.path.join(scan, 'depth'))) == ['0000.png']
     assert len(topple.parse(scan, device=device, disturbances=[]).objects) > 2
-    for option, words in ({'kind': 'zoo'}, '^kind zoo: expected plain'), ({'seed': 'x'}, '^seed x: expected a whole number'):
+    for option, words in ({'kind': 'zoo'}, '^--kind zoo: expected plain'), ({'seed': 'x'}, '^--seed x: expected a whole number'):
         with raises('usage', words):
             topple.generate(tmp_path / 'other', **option)
     (tmp_path / 'thesis').mkdir()

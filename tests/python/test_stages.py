@@ -257,7 +257,7 @@ def volume():
     (lambda d: volume().carve(SEEN, POSE, CAMERA._replace(depth_scale=1.0), device=d), 'at the depth_scale of the intrinsics, 1, the readings of 1 depth frame lie about 2000 m away'),
     (lambda d: volume().state_at([1, 2], [1, 2, 3], 0), 'i, j, k: shapes (2,), (3,) and () do not go together'),
     (lambda d: stages.normals(SQUARE, 0.1, eye_m=(1e300, 0, 0), device=d), 'eye_m 1e+300: expected metres up to'),
-    (lambda d: stages.normals(SQUARE, 0.1, device='abacus'), 'backend abacus is unknown; take auto'),
+    (lambda d: stages.normals(SQUARE, 0.1, device='abacus'), 'backend (--backend) abacus is unknown; take auto'),
     (lambda d: stages.convolve(np.zeros((4, 4), np.float32), [[0, 0, 1.0]], [0, 1], device=d), 'primary: expected floats of shape (directions, height, width), not float32 of shape (4, 4)'),
     (lambda d: stages.convolve(np.zeros((1, 4, 4), np.float32), [[0, 0, 1.0]], [0], device=d), 'first: expected integers of shape (2,)'),
     (lambda d: stages.convolve(np.zeros((1, 4, 4), np.float32), [[0.5, 0, 1]], [0, 1], device=d), 'whole cells'),

@@ -222,7 +222,7 @@ TEST(Completion, WhatIsTooLargeToFillIsRefused) {
     }
     VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
                      std::vector<std::int32_t>(cloud.size(), 0));
-    test::expect_input_error([&] { fill(*device, scene, {}); }, {"use ParseOptions::voxel_m = 0."});
+    test::expect_input_error([&] { fill(*device, scene, {}); }, {"use voxel_m (--voxel) = 0."});
 }
 
 // That what is left out changes nothing is what FillEqualsTheWalkOnADenseGrid shows.

@@ -314,7 +314,7 @@ TEST(VoxelScene, RefusesWhatItCannotHold) {
     for (int n = 0; n < 1000; ++n) points.push_back({n * 3.0, n * 2.9, n * 1.0});
     const std::vector<std::int32_t> label(points.size(), 0);
     test::expect_input_error([&] { VoxelScene scene({}, cloud_of(points), label); },
-                             {"ParseOptions::voxel_m"});
+                             {"voxel_m (--voxel)"});
     EXPECT_THROW(VoxelScene({.voxel_m = 0}, {}, {}), Error);
     EXPECT_THROW(VoxelScene({.voxel_m = std::numeric_limits<double>::quiet_NaN()}, {}, {}), Error);
     EXPECT_THROW(VoxelScene({}, cloud_of({{0, 0, 0}}), {}), Error);

@@ -27,7 +27,7 @@ class NativeMemory final : public Memory {
             // Not of the kind device: that can be used, but the scan is too large for it.
             throw Error(ErrorKind::input, "buffer " + name + ": the system has no " +
                                               std::to_string(bytes) +
-                                              " bytes left; use a larger ParseOptions::voxel_m");
+                                              " bytes left; use a larger voxel_m (--voxel)");
         }
     }
     ~NativeMemory() override { std::free(data_); }
@@ -78,7 +78,7 @@ class NativeDevice final : public Device {
             throw Error(ErrorKind::device, "buffer " + name + ": " + std::to_string(bytes) +
                                                " bytes are more than the machine's memory of " +
                                                std::to_string(info_.limits.memory_bytes) +
-                                               " bytes; use a larger ParseOptions::voxel_m");
+                                               " bytes; use a larger voxel_m (--voxel)");
         }
         return std::make_unique<NativeMemory>(*this, bytes, name);
     }
@@ -122,7 +122,7 @@ class NativeDevice final : public Device {
 
 std::unique_ptr<Device> open_native(unsigned threads) {
     if (threads > ThreadPool::most_threads) {
-        throw Error(ErrorKind::usage, "open_device(): threads " + std::to_string(threads) +
+        throw Error(ErrorKind::usage, "threads (--threads) " + std::to_string(threads) +
                                           ": at most " + std::to_string(ThreadPool::most_threads) +
                                           " are of use; leave it out for one per core");
     }

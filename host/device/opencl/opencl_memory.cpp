@@ -21,7 +21,7 @@ OpenClMemory::OpenClMemory(const OpenClDevice& device, std::uint64_t bytes, cons
         if (!host_) {
             throw Error(ErrorKind::device, "buffer " + name + ": the system has no " +
                                                std::to_string(bytes) +
-                                               " bytes left; use a larger ParseOptions::voxel_m");
+                                               " bytes left; use a larger voxel_m (--voxel)");
         }
         flags |= CL_MEM_USE_HOST_PTR;
     }

@@ -76,7 +76,7 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
                     io::path_text(file) + ": such files are read by the program " + name +
                         ", in a process of its own, which was not found beside this one; name its "
                         "folder in the environment variable TOPPLE_READERS, or, for a file that "
-                        "you trust, say ParseOptions::isolate = false");
+                        "you trust, say isolate = false (--no-isolate)");
     }
     const child::Limits limits = limits_of(file);
     const std::filesystem::path there = std::filesystem::absolute(file);
@@ -86,7 +86,7 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
         throw Error(ErrorKind::input, io::path_text(file) + ": is read by another program, and " +
                                           ended.how +
                                           "; or, for a file that you trust, say "
-                                          "ParseOptions::isolate = false");
+                                          "isolate = false (--no-isolate)");
     try {
         if (ended.answer.whole()) return named_as_here(ended.answer, there, file);
     } catch (const child::BadAnswer&) {
@@ -96,7 +96,7 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
                        " within its limits of " + io::bytes_text(limits.memory_bytes) + " and " +
                        std::to_string(limits.cpu_s) +
                        " s; the file is damaged, or of another kind than its name says: write it "
-                       "anew, or, if you trust it, say ParseOptions::isolate = false");
+                       "anew, or, if you trust it, say isolate = false (--no-isolate)");
 }
 
 }  // namespace topple::reader

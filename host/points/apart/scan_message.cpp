@@ -112,7 +112,7 @@ void answer_scan(const std::string& unit, const std::filesystem::path& file,
     } catch (const std::bad_alloc&) {
         refuse(
             "takes more memory to read than a file of its size may; it is damaged, or, if you "
-            "trust it, say ParseOptions::isolate = false");
+            "trust it, say isolate = false (--no-isolate)");
     } catch (const std::exception& error) {
         refuse("can't be read: " + io::printable(error.what(), 200));
     }

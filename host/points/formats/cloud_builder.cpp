@@ -204,7 +204,7 @@ void note_extent(PointCloud& cloud) {
     if (extent > 300) {
         cloud.notes.push_back(
             "The points extend over " + short_number(extent) +
-            " m: if the file's unit is the millimetre, say ParseOptions::unit_m = 0.001.");
+            " m: if the file's unit is the millimetre, say unit_m = 0.001 (--unit mm).");
     }
     // Half a millimetre is what a float resolves at 8192 m.
     if (reach > 8192 && extent <= 300) {

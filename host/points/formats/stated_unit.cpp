@@ -284,7 +284,7 @@ std::string unit_note(const StatedUnit& unit) {
            (one ? "" : ", that of its heights " + short_number(unit.metres[2]) + " m,") + " by " +
            unit.by +
            ", and was taken for that; if they are metres, correct it there, and if they are "
-           "another, say ParseOptions::unit_m.";
+           "another, say unit_m (--unit).";
 }
 
 }  // namespace topple::io

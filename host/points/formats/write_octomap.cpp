@@ -63,7 +63,7 @@ void write_octomap(const std::filesystem::path& file, double voxel_m, const Octo
                 fail(file,
                      "an OctoMap's voxels lie within " + short_number(octomap_middle * voxel_m) +
                          " m of the origin, but the scene's reach " + short_number(v * voxel_m) +
-                         " m; move the scan to the origin, or use a larger ParseOptions::voxel_m");
+                         " m; move the scan to the origin, or use a larger voxel_m (--voxel)");
             }
         }
         add_block(tree, low, leaves.states.subspan(n * 512, 512));

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The program `topple`, and what is run by it."""
 import os
-import re
 import subprocess
 
 from ._arrays import error as _error
@@ -37,6 +36,5 @@ def generate(folder, *, seed=1, kind=None, frames=60, single=False):
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors='backslashreplace')
     if done.returncode:
         said = done.stderr.strip().splitlines() or [f'{command[0]} ended with {done.returncode}']
-        message = re.sub(r'--(seed|kind|frames|single)\b', r'\1', said[0].removeprefix('topple: '))
-        raise _error('usage' if done.returncode == 2 else 'input', message.removesuffix(' (see topple --help)'))
+        raise _error('usage' if done.returncode == 2 else 'input', said[0].removeprefix('topple: ').removesuffix(' (see topple --help)'))
     return folder

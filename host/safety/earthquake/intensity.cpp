@@ -41,12 +41,12 @@ std::string unlikely_peak_note(double pga_m_s2) {
     if (!weak && in_g < hardly_recorded_g) return "";
     const std::string given = io::short_number(pga_m_s2);
     const std::string meant = to_digits(pga_m_s2 * physics::gravity * (weak ? 1 : hundredth), 3);
-    std::string note = "ParseOptions::pga_m_s2 = " + given;
+    std::string note = "pga_m_s2 (--pga) = " + given;
     note.append(" is ").append(io::two_digits(in_g)).append(" g (");
     note.append(shaking_text(in_g)).append(")");
     if (!weak) note.append(", stronger than nearly all that were recorded");
     note.append(weak ? ": for " : "; for ").append(given).append(weak ? " g" : " % of g");
-    return note.append(" give ParseOptions::pga_m_s2 = ").append(meant).append(".");
+    return note.append(" give pga_m_s2 (--pga) = ").append(meant).append(".");
 }
 
 }  // namespace topple::safety

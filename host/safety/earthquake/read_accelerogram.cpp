@@ -28,7 +28,7 @@ constexpr std::uint64_t most_bytes = 100'000'000;
 // Twice what was ever recorded horizontally; and more than all but a handful of records have.
 constexpr double highest_g = 10, highest_assumed_g = 3;
 
-const char* const mend = "name it with acceleration_unit_m_s2(): g, m/s2 or cm/s2";
+const char* const mend = "name it with accelerogram_unit (--accelerogram-unit): g, m/s2 or cm/s2";
 
 // The samples as a file has them.
 struct Raw {
@@ -203,7 +203,7 @@ Raw read_text(const fs::path& file, std::string_view text, bool unit_given) {
 double acceleration_unit_m_s2(const std::string& name) {
     if (const std::optional<double> unit = io::acceleration_unit_m_s2(name)) return *unit;
     throw Error(ErrorKind::usage,
-                "acceleration_unit_m_s2() " + name + ": expected g, m/s2 or cm/s2");
+                "accelerogram_unit (--accelerogram-unit) " + name + ": expected g, m/s2 or cm/s2");
 }
 
 Accelerogram read_accelerogram(const fs::path& file, std::optional<double> unit_m_s2) {

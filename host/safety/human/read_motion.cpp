@@ -143,13 +143,13 @@ void check_motion_options(const MotionFileOptions& options) {
             throw Error(ErrorKind::usage, std::string(name) + " " + io::short_number(*value) +
                                               ": expected a number above 0");
     };
-    check("MotionFileOptions::unit_m", options.unit_m);
-    check("MotionFileOptions::rate_hz", options.rate_hz);
+    check("motion_unit (--motion-unit)", options.unit_m);
+    check("motion_rate (--motion-rate)", options.rate_hz);
     if (!options.up) return;
     const double length = std::hypot((*options.up)[0], (*options.up)[1], (*options.up)[2]);
     if (!(length > 0) || !std::isfinite(length))
         throw Error(ErrorKind::usage,
-                    "MotionFileOptions::up: expected three numbers, not all zero");
+                    "motion_up (--motion-up): expected three numbers, not all zero");
 }
 
 }  // namespace
@@ -181,9 +181,10 @@ BodyMotion read_motion(const std::filesystem::path& file, const MotionFileOption
     }
     out.step_s = options.rate_hz ? 1 / *options.rate_hz : raw.step_s;
     if (!(out.step_s > 0)) {
-        io::fail(file,
-                 "has no column \"time\": say how many frames a second were recorded "
-                 "(MotionFileOptions::rate_hz)");
+        io::fail(
+            file,
+            "has no column \"time\": say by motion_rate (--motion-rate) how many frames a second "
+            "were recorded");
     }
     if (out.step_s > 0.2) {
         io::fail(file, "its frames are " + io::short_number(out.step_s) +

@@ -44,15 +44,17 @@ TEST_F(CApi, ErrorsSayWhatIsWrong) {
               0u);
     options.friction = -1;
     EXPECT_EQ(message(parsed(), TOPPLE_ERROR_USAGE),
-              "friction -1: expected a number above 0 and at most 10");
+              "friction (--friction) -1: expected a number above 0 and at most 10");
     options.friction = 0.3;
     options.tile_m = 5;
-    EXPECT_EQ(message(parsed(), TOPPLE_ERROR_USAGE).find("tile_m 5: only clouds in files"), 0u);
+    EXPECT_EQ(message(parsed(), TOPPLE_ERROR_USAGE).find("tile_m (--tile) 5: only clouds in files"),
+              0u);
     options.tile_m = 0;
     options.max_memory_bytes = 1;
     EXPECT_THAT(
         message(parsed(), TOPPLE_ERROR_INPUT),
-        testing::HasSubstr(" of max_memory_bytes: allow that much, or use a larger voxel_m"));
+        testing::HasSubstr(
+            " of max_memory_bytes (--max-memory): allow that much, or use a larger voxel_m"));
     options.max_memory_bytes = 0;
     options.disturbances = 9;
     message(parsed(), TOPPLE_ERROR_USAGE);
@@ -61,7 +63,7 @@ TEST_F(CApi, ErrorsSayWhatIsWrong) {
               "options: size is 0; set it to sizeof of the struct");
     topple_device* other = nullptr;
     EXPECT_EQ(topple_device_open("abacus", 0, &other, &status), TOPPLE_ERROR_USAGE);
-    EXPECT_EQ(std::string(status.message).find("backend abacus is unknown"), 0u);
+    EXPECT_EQ(std::string(status.message).find("backend (--backend) abacus is unknown"), 0u);
     EXPECT_EQ(topple_device_adopt_opencl(nullptr, nullptr, nullptr, &other, &status),
               TOPPLE_ERROR_DEVICE);
     EXPECT_EQ(other, nullptr);

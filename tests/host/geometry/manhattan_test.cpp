@@ -333,7 +333,7 @@ TEST_F(Manhattan, WhatLooksTheSameFromBelowHasZUp) {
         const SceneFrame frame =
             find_scene_frame(*device, s, {.up = {}, .camera_up = {}, .sides_guessed = true});
         EXPECT_LT(degrees_off(frame.axes[2], {0, 0, 1}), 1);
-        EXPECT_THAT(frame.note, testing::HasSubstr("ParseOptions::up"));
+        EXPECT_THAT(frame.note, testing::HasSubstr("up (--up)"));
     }
 }
 

@@ -70,8 +70,9 @@ TEST_F(Accelerograms, UnitsOfTheHeaderAndOfTheOption) {
     }
     EXPECT_EQ(read(rows).notes.size(), 1u);
     EXPECT_DOUBLE_EQ(read(rows).m_s2[0], 0.980665);
-    refused(std::vector<test::BadFile>{
-        {"# cm/s2, 1 g = 980.665 cm/s2\n" + rows, {"several units", "acceleration_unit_m_s2()"}}});
+    refused(
+        std::vector<test::BadFile>{{"# cm/s2, 1 g = 980.665 cm/s2\n" + rows,
+                                    {"several units", "accelerogram_unit (--accelerogram-unit)"}}});
     EXPECT_EQ(read("# cm/s2, not g\n" + rows, 0.01).notes.size(), 0u);
 }
 
@@ -132,7 +133,8 @@ TEST_F(Accelerograms, FaultsAreNamedWithTheirPlaceAndMend) {
         {"0 0.1\n0.01 0.1\n0.02 0.3\n0.09 0.1\n0.1 0\n", {"line 4", "0.09", "0.07 s", "equally"}},
         {"0 0\n0.01 0\n", {"no acceleration"}},
         {"0 0.1\n10 0\n", {"10 s apart", "0.5 s", "seconds"}},
-        {"# gal\n0 20000\n0.01 0\n", {"20.39", "limit of 10 g", "acceleration_unit_m_s2()"}},
+        {"# gal\n0 20000\n0.01 0\n",
+         {"20.39", "limit of 10 g", "accelerogram_unit (--accelerogram-unit)"}},
         {"0 3.13\n0.01 0\n", {"3.13 g", "no unit", "limit of 3 g", "m/s2"}},
         {std::string("0 1\0 1", 6), {"neither JSON nor text"}},
         {"{\"dT\": 0.1", {"no JSON"}},
@@ -268,7 +270,7 @@ TEST_F(Motion, SaysWhatIsWrong) {
     refused("a.csv", "a.x,a.y,a.z\n1,1,1\n1,1\n", "2 columns");
     std::string still = "l_hip.x l_hip.y l_hip.z\n";
     for (int f = 0; f < 99; ++f) still += "1 1 1\n";
-    refused("a.csv", still, "MotionFileOptions::rate_hz");
+    refused("a.csv", still, "motion_rate (--motion-rate)");
     MotionFileOptions options;
     options.rate_hz = 100;
     refused("a.csv", still, "size of the body", options);
@@ -279,11 +281,11 @@ TEST_F(Motion, OptionsThatMakeNoSenseAreRefusedByName) {
     const auto wrong = [&](const MotionFileOptions& options) {
         return test::message_of([&] { read_motion(file, options); }, ErrorKind::usage);
     };
-    EXPECT_EQ(wrong({0, {}, {}}), "MotionFileOptions::unit_m 0: expected a number above 0");
+    EXPECT_EQ(wrong({0, {}, {}}), "motion_unit (--motion-unit) 0: expected a number above 0");
     EXPECT_EQ(wrong({{}, HUGE_VAL, {}}),
-              "MotionFileOptions::rate_hz inf: expected a number above 0");
+              "motion_rate (--motion-rate) inf: expected a number above 0");
     EXPECT_EQ(wrong({{}, {}, Vec3{0, 0, 0}}),
-              "MotionFileOptions::up: expected three numbers, not all zero");
+              "motion_up (--motion-up): expected three numbers, not all zero");
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ TEST_F(Octomap, states_come_back_as_they_were_written) {
             write_octomap(path("b.bt"), 0.02,
                           {beyond, beyond, beyond, std::span(states).first(512)});
         },
-        {"b.bt", "655.36", "ParseOptions::voxel_m"});
+        {"b.bt", "655.36", "voxel_m (--voxel)"});
 }
 
 TEST_F(Octomap, bad_files) {

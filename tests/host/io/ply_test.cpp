@@ -231,7 +231,7 @@ TEST_F(Ply, notes_what_looks_like_millimetres_unless_the_unit_is_given) {
     };
     const std::string millimetres = notes("0 0 0\n4000 2500 3000\n");
     EXPECT_THAT(millimetres, testing::HasSubstr("4000 m"));
-    EXPECT_THAT(millimetres, testing::HasSubstr("ParseOptions::unit_m = 0.001"));
+    EXPECT_THAT(millimetres, testing::HasSubstr("unit_m = 0.001 (--unit mm)"));
     EXPECT_THAT(notes("500000 0 0\n500004 2 3\n"), testing::HasSubstr("offset"));
     EXPECT_EQ(notes("0 0 0\n4 2.5 3\n"), "");
     EXPECT_EQ(notes("0 0 0\n4000 2500 3000\n", 0.001), "");

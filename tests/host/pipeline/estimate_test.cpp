@@ -109,7 +109,7 @@ TEST(Budget, IsByTheOptionsElseByTheInputAndTheMachine) {
     const Budget asked("scan", 134, options);
     EXPECT_EQ(asked.bytes(), options.max_memory_bytes);
     EXPECT_TRUE(asked.asked());
-    EXPECT_EQ(memory_bound_text(options), "1 MiB of ParseOptions::max_memory_bytes");
+    EXPECT_EQ(memory_bound_text(options), "1 MiB of max_memory_bytes (--max-memory)");
     EXPECT_NO_THROW(asked.check("it takes", 1 << 20, "take less"));
     EXPECT_THROW(asked.check("it takes", (1 << 20) + 1, "take less"), Error);
 }
@@ -128,7 +128,7 @@ TEST(Budget, EndsWhatTakesMoreWhereItPolls) {
     const std::vector<char> taken(2 * Budget::least_bytes, 1);
     EXPECT_THAT(test::message_of(poll, std::nullopt),
                 testing::StartsWith("scan: in the stage \"filling\" its points take more than the "
-                                    "256 MiB of ParseOptions::max_memory_bytes"))
+                                    "256 MiB of max_memory_bytes (--max-memory)"))
         << taken.size();
 }
 

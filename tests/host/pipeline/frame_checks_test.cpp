@@ -52,7 +52,8 @@ TEST(FrameChecks, PosesOfAnotherConvention) {
         for (const std::size_t n : {1U, 5U, 9U, 2U, 6U, 10U}) pose[n] *= -1;
     EXPECT_THAT(note_of(poses, ScanOrigin::frames_folder),
                 AllOf(HasSubstr("OpenGL"), HasSubstr("write into the file of poses"),
-                      HasSubstr("each pose with its second and third columns negated.")));
+                      HasSubstr("each pose with its second and third columns negated (pose @ "
+                                "np.diag([1, -1, -1, 1])).")));
     EXPECT_THAT(note_of(poses), HasSubstr("give as camera_to_world"));
     poses.assign(right.rbegin(), right.rend());
     EXPECT_THAT(note_of(poses, ScanOrigin::frames_folder),

@@ -142,13 +142,13 @@ TEST_F(FramesViews, EndWhereTheyAreCancelledOrWouldTakeTooMuch) {
     // Before they are fused, while they are, and once they are.
     for (const auto& [bytes, text] :
          {std::pair{1u << 20, "frames: to fuse 6 depth frames takes at least"},
-          {63'000'000u, "than the 60.1 MiB of ParseOptions::max_memory_bytes; allow more, or give"},
-          {270u << 20, " of ParseOptions::max_memory_bytes: allow that much, or use a larger"}}) {
+          {63'000'000u,
+           "than the 60.1 MiB of max_memory_bytes (--max-memory); allow more, or give"},
+          {270u << 20, " of max_memory_bytes (--max-memory): allow that much, or use a larger"}}) {
         options = quick();
         options.max_memory_bytes = bytes;
-        const std::string said = message_of([&] { parse(view(), options); }, ErrorKind::input);
-        EXPECT_THAT(said, testing::HasSubstr(text));
-        EXPECT_THAT(said, testing::Not(testing::HasSubstr("--")));
+        EXPECT_THAT(message_of([&] { parse(view(), options); }, ErrorKind::input),
+                    testing::HasSubstr(text));
     }
     options = quick();
     options.unit_m = 0.001;

@@ -31,11 +31,11 @@ TEST(Options, WhatIsGivenTwiceOrIsNothingIsRefused) {
     ParseOptions options;
     options.motions = {std::make_shared<BodyMotion>(), nullptr};
     EXPECT_EQ(refusal_before(cloud, options),
-              "ParseOptions::motions: number 1 is null; give what read_motion() returns, or leave "
+              "motion (--motion): number 1 is null; give what read_motion() returns, or leave "
               "it out");
     options.motions.clear();
     options.disturbances = {"human", "wind", "human"};
-    const std::string twice = "ParseOptions::disturbances: human is given twice; name each once";
+    const std::string twice = "disturbances (--disturbance): human is given twice; name each once";
     EXPECT_EQ(refusal_before(cloud, options), twice);
     EXPECT_EQ(refusal_of([&] { check_options(options); }), twice);
 }
@@ -70,14 +70,12 @@ TEST(Options, WhatIsForFilesIsRefusedOfWhatIsInMemory) {
 // Once, and of what is reckoned with alone. A peak of 0.3 m/s^2 was meant in g, perhaps.
 TEST(Options, APeakInAnotherUnitIsAskedAbout) {
     const std::string weak = safety::unlikely_peak_note(0.3);
-    EXPECT_EQ(
-        weak,
-        "ParseOptions::pga_m_s2 = 0.3 is 0.031 g (light shaking, intensity IV): for 0.3 g give "
-        "ParseOptions::pga_m_s2 = 2.94.");
-    EXPECT_EQ(
-        safety::unlikely_peak_note(30),
-        "ParseOptions::pga_m_s2 = 30 is 3.1 g (extreme shaking, intensity X or more), stronger "
-        "than nearly all that were recorded; for 30 % of g give ParseOptions::pga_m_s2 = 2.94.");
+    EXPECT_EQ(weak,
+              "pga_m_s2 (--pga) = 0.3 is 0.031 g (light shaking, intensity IV): for 0.3 g give "
+              "pga_m_s2 (--pga) = 2.94.");
+    EXPECT_EQ(safety::unlikely_peak_note(30),
+              "pga_m_s2 (--pga) = 30 is 3.1 g (extreme shaking, intensity X or more), stronger "
+              "than nearly all that were recorded; for 30 % of g give pga_m_s2 (--pga) = 2.94.");
     EXPECT_EQ(safety::unlikely_peak_note(3), "");
     PointCloud plane;
     for (int n = 0; n < 3600; ++n) test::add(plane, n % 60 / 30.0, n / 60 / 30.0, 0);
@@ -162,15 +160,15 @@ TEST(UnitHint, by_size_and_spacing) {
          {20, 20, 20},
          INFINITY,
          ScanOrigin::mesh_file,
-         "unit_m = 0.001 (0.020 m)"},
+         "unit_m = 0.001 (--unit mm) (0.020 m)"},
         {"a room in mm",
          {4000, 3000, 2500},
          INFINITY,
          ScanOrigin::mesh_file,
-         "unit_m = 0.001 (4.0 m)"},
-        {"in cm", {400, 300, 250}, INFINITY, ScanOrigin::mesh_file, "unit_m = 0.01 (4.0 m)"},
-        {"in inches", {157, 118, 98}, 0.2, ScanOrigin::cloud_file, "unit_m = 0.0254 (4.0 m)"},
-        {"in feet", {13, 10, 8.2}, 0.03, ScanOrigin::cloud_file, "unit_m = 0.3048 (4.0 m)"},
+         "unit_m = 0.001 (--unit mm) (4.0 m)"},
+        {"in cm", {400, 300, 250}, INFINITY, ScanOrigin::mesh_file, "(--unit cm) (4.0 m)"},
+        {"in inches", {157, 118, 98}, 0.2, ScanOrigin::cloud_file, "(--unit in) (4.0 m)"},
+        {"in feet", {13, 10, 8.2}, 0.03, ScanOrigin::cloud_file, "(--unit ft) (4.0 m)"},
         {"in memory", {13, 10, 8.2}, 0.03, ScanOrigin::cloud_in_memory, "by 0.3048 (4.0 m)"},
         {"a room", {4, 3, 2.5}, INFINITY, ScanOrigin::mesh_file, nullptr},
         {"a hall", {25, 20, 4.5}, 0.03, ScanOrigin::cloud_file, nullptr},

@@ -107,7 +107,7 @@ TEST_F(Apart, what_crashes_there_is_an_error_here) {
         SCOPED_TRACE(c.script);
         take_script(c.script);
         expect_input_error([&] { read_scan_apart(file, 1, {}); },
-                           {"a.obj", c.message, "ParseOptions::isolate = false"});
+                           {"a.obj", c.message, "isolate = false (--no-isolate)"});
     }
 }
 

@@ -111,7 +111,7 @@ TEST(Spill, RefusesPointsThatAreSpreadTooThin) {
     PointCloud wide;
     for (int n = 0; n < 3000; ++n) test::add(wide, n * 6, 0, 0);
     test::expect_input_error([&] { out.add(wide, "wide.ply"); },
-                             {"wide.ply", "ParseOptions::unit_m = 0.001"});
+                             {"wide.ply", "unit_m = 0.001 (--unit mm)"});
 }
 
 TEST(Spill, ACutFileIsNoticed) {
