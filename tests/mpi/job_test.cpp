@@ -139,7 +139,7 @@ TEST_F(Job, ranks_give_what_one_process_gives) {
 }
 
 TEST_F(Job, wrong_usage_is_told_once) {
-    expect_told(job(ranks(3, parse("out", "0.1"))), 2, {"--tile 0.1"});
+    expect_told(job(ranks(3, parse("out", "0.1"))), 2, {"tile_m (--tile) 0.1"});
     expect_told(job(ranks(2, {"parse", "missing.ply", "--quiet"})), 1, {"missing.ply"});
 }
 
