@@ -97,45 +97,61 @@ struct Candidate {
     std::optional<Vec3> other{};  // a direction about as likely
 };
 
-void keep_better(Candidate& best, const Candidate& other) {
-    if (other.score > best.score) best = other;
+// The best of them, which knows of another that is about as likely.
+Candidate best_of(const std::vector<Candidate>& all) {
+    Candidate best, second;
+    for (const Candidate& c : all)
+        if (c.score > best.score) best = c;
+    for (const Candidate& c : all)
+        if (degrees_between(c.up, best.up) > apart_degrees && c.score > second.score) second = c;
+    if (near_odds * second.score > best.score) best.other = second.up;
+    return best;
+}
+
+double nearness(const Vec3& a, const Vec3& b, double degrees) {
+    const double off = degrees_between(a, b) / degrees;
+    return std::exp(-off * off / 2);
+}
+
+// Whether cameras are held along the input's z, which is up in most such inputs.
+bool along_z(const Vec3& camera_up) {
+    return degrees_between(camera_up, {0, 0, 1}) < usual_pitch_degrees;
 }
 
 // The evidence of planes across a direction, weighed by how near it is to the camera's up.
 Candidate with_camera(const Seen& seen, const std::vector<Candidate>& candidates,
                       const Vec3& camera_up) {
-    Candidate best;
+    std::vector<Candidate> all;
     for (Candidate c : candidates) {
         if (dot(c.up, camera_up) < 0) c.up = times(c.up, -1);
         const Profile p = seen.along(c.up);
         for (const bool flipped : {false, true}) {
-            const double up = flipped ? p.against : p.along, down = flipped ? p.along : p.against;
+            const double share =
+                (flipped ? p.against : p.along) + facing_down * (flipped ? p.along : p.against);
             Candidate option = c;
             if (flipped) option.up = times(c.up, -1);
             const double pitch = degrees_between(option.up, camera_up);
             if (pitch > most_pitch_degrees) continue;
             const bool steep = pitch > steep_degrees;
-            if (steep ? up < least_share_from_above
-                      : up + down < (pitch < near_camera_degrees ? least_share_near_camera
-                                                                 : least_plane_share)) {
+            if (steep ? share < least_share_from_above
+                      : share < (pitch < near_camera_degrees ? least_share_near_camera
+                                                             : least_plane_share)) {
                 continue;
             }
-            const double off = pitch / usual_pitch_degrees;
             if (steep) option.doubt = seen_from_above;
-            option.score = (up + facing_down * down) * std::exp(-off * off / 2) * c.score;
-            keep_better(best, option);
+            option.score = share * c.score * nearness(option.up, camera_up, usual_pitch_degrees);
+            if (along_z(camera_up))
+                option.score *= 1 + odds_of_z * nearness(option.up, {0, 0, 1}, tilt_degrees);
+            all.push_back(option);
         }
     }
-    return best;
+    return best_of(all);
 }
 
 // What is known of a direction before looking: of a format with an up of its own, most have that;
 // else most inputs have z up, some have y or -y up.
 double prior_odds(const Vec3& up, const std::optional<Vec3>& format_up) {
-    const auto near = [&](const Vec3& axis) {
-        const double off = degrees_between(up, axis) / tilt_degrees;
-        return std::exp(-off * off / 2);
-    };
+    const auto near = [&](const Vec3& axis) { return nearness(up, axis, tilt_degrees); };
     if (format_up) return 1 + odds_of_format * near(*format_up);
     return 1 + odds_of_z * near({0, 0, 1}) + odds_of_y * (near({0, 1, 0}) + near({0, -1, 0}));
 }
@@ -162,7 +178,6 @@ std::array<double, 2> end_odds(const Profile& p, const Seen& seen) {
 Candidate without_camera(const Seen& seen, const std::vector<Candidate>& candidates,
                          const std::optional<Vec3>& format_up) {
     std::vector<Candidate> all;
-    Candidate best;
     for (const Candidate& c : candidates) {
         const Profile p = seen.along(c.up);
         if (p.along + p.against < least_plane_share && c.up != format_up) continue;
@@ -176,15 +191,10 @@ Candidate without_camera(const Seen& seen, const std::vector<Candidate>& candida
                 option.doubt = by_looks;
             else if (!format_up && open)
                 option.doubt = either_side;
-            keep_better(best, option);
             all.push_back(option);
         }
     }
-    Candidate second;
-    for (const Candidate& c : all)
-        if (degrees_between(c.up, best.up) > apart_degrees) keep_better(second, c);
-    if (near_odds * second.score > best.score) best.other = second.up;
-    return best;
+    return best_of(all);
 }
 
 // Near the camera's up, the direction that upright surfaces leave (Gupta et al. 2013): the least
@@ -233,8 +243,8 @@ std::optional<Vec3> implied_camera(const WeightedNormals& normals) {
 double log_odds_of(const Seen& seen, const Vec3& up, const std::optional<Vec3>& camera) {
     const double looks = end_odds(seen.along(up), seen)[0];
     if (!camera) return looks;
-    const double off = degrees_between(up, *camera) / usual_pitch_degrees;
-    return looks + std::log((1 - rolled_share) * std::exp(-off * off / 2) + rolled_share);
+    return looks +
+           std::log((1 - rolled_share) * nearness(up, *camera, usual_pitch_degrees) + rolled_share);
 }
 
 std::string text_of(const Vec3& v) {
@@ -267,8 +277,8 @@ UpChoice with_format(const Vec3& up, const Vec3& format_up, bool manhattan) {
 FoundUp find_up(const Seen& seen, const std::vector<Vec3>& directions,
                 const std::vector<Vec3>& manhattan, const std::optional<Vec3>& camera,
                 const std::optional<Vec3>& format_up) {
-    const FoundUp assumed{
-        {camera.value_or(format_up.value_or(Vec3{0, 0, 1})), "assumed", not_found}};
+    const Vec3 own = camera && !along_z(*camera) ? *camera : format_up.value_or(Vec3{0, 0, 1});
+    const FoundUp assumed{{own, "assumed", not_found}};
     if (seen.normals.size() == 0) return assumed;
 
     std::vector<Candidate> candidates;
