@@ -19,13 +19,12 @@ Adjacency::Adjacency(std::int32_t nodes, std::span<const Edge> edges)
     }
     std::partial_sum(first.begin(), first.end(), first.begin());
     Table<NodeId, std::size_t> next(first.begin(), first.end() - 1);
-    for (std::uint32_t i = 0; i < edges.size(); ++i) {
-        const double q = edges[i].turn_on;
+    for (const Edge& e : edges) {
         const auto link = [&](std::int32_t from, std::int32_t to) {
-            links[next[from]++] = {to, i, q, std::log1p(-q)};
+            links[next[from]++] = {to, e.turn_on, std::log1p(-e.turn_on)};
         };
-        link(edges[i].a, edges[i].b);
-        link(edges[i].b, edges[i].a);
+        link(e.a, e.b);
+        link(e.b, e.a);
     }
 }
 
@@ -38,16 +37,12 @@ CutChain::CutChain(const CutProblem& problem, const EnergyCache& energies, Rando
       members_(problem.key.size() + 1),
       key_(members_.size()),
       energy_of_label_(members_.size()),
-      joints_(problem.edges.size()),
       is_moved_(problem.key.size()),
       seen_(problem.key.size()),
       own_(problem.key.size()),
       seen_label_(members_.size()),
       log_miss_to_(members_.size()) {
     group_by(start);
-    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
-        if (label_of(problem.edges[e].a) == label_of(problem.edges[e].b)) joints_.join(e, 0);
-    }
 }
 
 bool CutChain::begin() {
@@ -131,14 +126,6 @@ void CutChain::take() {
     key_[to_] = to_key_;
     energy_of_label_[from_] = from_energy_;
     energy_of_label_[to_] = to_energy_;
-    for (const std::int32_t n : moved_) {
-        for (const Link& link : problem_.adjacency.of(n)) {
-            if (is_moved_.has(link.node)) continue;
-            const LabelId l = label_of(link.node);
-            if (l == from_) joints_.part(link.edge, samples_);
-            if (l == to_) joints_.join(link.edge, samples_);
-        }
-    }
     for (const std::int32_t n : moved_) label_[n] = to_;
 }
 

@@ -22,7 +22,6 @@ inline constexpr LabelId pinned_label = 0;
 // An edge as one of its nodes sees it.
 struct Link {
     std::int32_t node;
-    std::uint32_t edge;
     double turn_on, log_miss;  // q_e and ln(1 - q_e)
 };
 
@@ -39,7 +38,6 @@ struct Adjacency {
 
 // What all chains share.
 struct CutProblem {
-    std::span<const Edge> edges;
     Table<NodeId, bool> pinned;
     Adjacency adjacency;
     Table<NodeId, GroupKey> key;
@@ -47,29 +45,10 @@ struct CutProblem {
 
     CutProblem(std::int32_t nodes, std::span<const Edge> all, Table<NodeId, bool> held,
                TableView<NodeId, std::vector<std::int32_t>> kept_apart = {})
-        : edges(all),
-          pinned(std::move(held)),
+        : pinned(std::move(held)),
           adjacency(nodes, all),
           key(keys_of_nodes(nodes)),
           apart(kept_apart) {}
-};
-
-// How long both ends of each edge have been in one group, in samples.
-class JointCounts {
-  public:
-    explicit JointCounts(std::size_t edges) : count_(edges), since_(edges, apart) {}
-    void join(std::size_t edge, std::uint64_t now) { since_[edge] = now; }
-    void part(std::size_t edge, std::uint64_t now) {
-        count_[edge] += now - since_[edge];
-        since_[edge] = apart;
-    }
-    std::uint64_t until(std::size_t edge, std::uint64_t now) const {
-        return count_[edge] + (since_[edge] == apart ? 0 : now - since_[edge]);
-    }
-
-  private:
-    static constexpr std::uint64_t apart = std::numeric_limits<std::uint64_t>::max();
-    std::vector<std::uint64_t> count_, since_;
 };
 
 // One Markov chain of Swendsen-Wang cuts. Where it needs energies that the cache lacks it waits:
@@ -88,11 +67,6 @@ class CutChain {
 
     double energy() const { return energy_; }
     const std::vector<std::int32_t>& labels() const { return label_; }
-
-    void take_sample() { ++samples_; }
-    std::uint64_t samples() const { return samples_; }
-    // Samples that have both ends of the edge in one group.
-    std::uint64_t samples_joined(std::size_t edge) const { return joints_.until(edge, samples_); }
 
   private:
     bool is_pinned(NodeId n) const { return problem_.pinned[n]; }
@@ -127,8 +101,6 @@ class CutChain {
     double energy_ = 0;
     // A group of two or more leaves a label free, and none other is asked for one.
     std::size_t lowest_free_ = 1;
-    JointCounts joints_;
-    std::uint64_t samples_ = 0;
 
     // The flip that is proposed, and the groups after it.
     std::vector<std::int32_t> moved_;

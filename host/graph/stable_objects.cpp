@@ -93,9 +93,6 @@ Grouping group_primitives(device::Device& device, const ContactGraph& graph,
     sampler.last_temperature = 0.02;
     sampler.anneal_steps =
         static_cast<unsigned>(std::clamp<std::int64_t>(5 * graph.primitives, 1000, 50'000));
-    // What samples at a temperature of 1 say of pairs tells less of objects than joints do
-    // (fitted/whole.model.json).
-    sampler.sample_steps = 0;
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;
     Partition partition = swendsen_wang_cuts(nodes.size(), edges_of(joints_of_nodes), pinned,

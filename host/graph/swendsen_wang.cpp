@@ -28,28 +28,20 @@ struct Outcome {
     std::vector<std::int32_t> best_labels;
     double best_energy = std::numeric_limits<double>::infinity();
     std::vector<double> best_energy_curve;
-    std::vector<std::uint64_t> joined;  // samples, by edge
-    std::uint64_t samples = 0;
 };
 
-// How far a chain is with its annealing and its sampling, 0 to 2, by its steps, or by its time
-// where that is short.
+// How far a chain is with its annealing, 0 to 1, by its steps, or by its time where that is short.
 class Schedule {
   public:
     explicit Schedule(const SwendsenWangOptions& options) : options_(options) {}
 
     double at(unsigned step) const {
-        const double by_steps =
-            step < options_.anneal_steps
-                ? step / static_cast<double>(options_.anneal_steps)
-                : 1 + (step - options_.anneal_steps) / static_cast<double>(options_.sample_steps);
+        const double by_steps = step / static_cast<double>(options_.anneal_steps);
         if (options_.time_limit_s <= 0) return by_steps;
         const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-        return std::max(by_steps, end() * elapsed / options_.time_limit_s);
+        return std::max(by_steps, elapsed / options_.time_limit_s);
     }
-    double end() const { return options_.sample_steps > 0 ? 2 : 1; }
     double temperature(double along) const {
-        if (along >= 1) return options_.sample_temperature;
         return options_.first_temperature *
                std::pow(options_.last_temperature / options_.first_temperature, along);
     }
@@ -64,8 +56,7 @@ class Run {
   public:
     Run(const CutProblem& problem, const EnergyCache& cache, std::size_t number,
         const SwendsenWangOptions& options)
-        : problem_(problem),
-          options_(options),
+        : options_(options),
           schedule_(options),
           chain_(problem, cache, Random(options.seed).split(number), start_of(number, options)) {}
 
@@ -77,30 +68,22 @@ class Run {
             out_.best_labels = chain_.labels();
             out_.best_energy = chain_.energy();
         }
-        for (; step_ < options_.anneal_steps + options_.sample_steps; ++step_) {
+        for (; step_ < options_.anneal_steps; ++step_) {
             const double along = schedule_.at(step_);
-            if (along >= schedule_.end() || stopped()) break;
+            if (along >= 1 || stopped()) break;
             if (!chain_.step(schedule_.temperature(along))) return true;
             // A margin, so that rounding in the running sum is not taken for an improvement.
             if (chain_.energy() < out_.best_energy - 1e-9) {
                 out_.best_energy = chain_.energy();
                 out_.best_labels = chain_.labels();
             }
-            if (along < 1)
-                out_.best_energy_curve.push_back(out_.best_energy);
-            else
-                chain_.take_sample();
+            out_.best_energy_curve.push_back(out_.best_energy);
         }
         return false;
     }
     const std::vector<EnergyCache::Missing>& wanted() const { return chain_.wanted(); }
 
-    Outcome outcome() && {
-        out_.samples = chain_.samples();
-        for (std::size_t e = 0; e < problem_.edges.size(); ++e)
-            out_.joined.push_back(chain_.samples_joined(e));
-        return std::move(out_);
-    }
+    Outcome outcome() && { return std::move(out_); }
 
   private:
     static TableView<NodeId, std::int32_t> start_of(std::size_t number,
@@ -108,7 +91,6 @@ class Run {
         if (options.starts.empty()) return {};
         return options.starts[number % options.starts.size()];
     }
-    const CutProblem& problem_;
     const SwendsenWangOptions& options_;
     Schedule schedule_;
     CutChain chain_;
@@ -144,24 +126,14 @@ std::vector<double> best_of(const std::vector<Outcome>& chains) {
     return curve;
 }
 
-Partition combined(const std::vector<Outcome>& chains, std::size_t edges) {
+Partition combined(const std::vector<Outcome>& chains) {
     Partition result;
     const Outcome* best = &chains.front();
-    std::uint64_t samples = 0;
-    for (const Outcome& c : chains) {
+    for (const Outcome& c : chains)
         if (c.best_energy < best->best_energy - 1e-9) best = &c;
-        samples += c.samples;
-    }
     result.label = canonical(best->best_labels);
     result.energy = best->best_energy;
     result.best_energy_curve = best_of(chains);
-    result.joined.assign(edges, 0.0);
-    for (std::size_t e = 0; e < edges && samples > 0; ++e) {
-        std::uint64_t joined = 0;
-        for (const Outcome& c : chains)
-            if (!c.joined.empty()) joined += c.joined[e];
-        result.joined[e] = static_cast<double>(joined) / static_cast<double>(samples);
-    }
     return result;
 }
 
@@ -199,7 +171,7 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
     }
     std::vector<Outcome> outcomes;
     for (Run& run : runs) outcomes.push_back(std::move(run).outcome());
-    Partition result = combined(outcomes, edges.size());
+    Partition result = combined(outcomes);
     result.energies_evaluated = cache.evaluated();
     return result;
 }

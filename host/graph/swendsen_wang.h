@@ -43,12 +43,10 @@ struct SwendsenWangOptions {
     unsigned chains = 8;             // independent
     ThreadPool* threads = nullptr;   // that the chains share; the result does not depend on them
     unsigned anneal_steps = 2000;    // flips per chain while cooling
-    unsigned sample_steps = 2000;    // flips per chain at the sampling temperature
     double first_temperature = 1.0;  // of p ~ exp(-E / T)
     double last_temperature = 0.05;
-    double sample_temperature = 0.05;
-    // Seconds for all, about; annealing and sampling are sped up to fit. 0: as long as they take. A
-    // limit that is met makes the result depend on the machine.
+    // Seconds for all, about; annealing is sped up to fit. 0: as long as it takes. A limit that is
+    // met makes the result depend on the machine.
     double time_limit_s = 0;
     // Partitions that the chains start from in turn: nodes of one group have one label, pinned
     // nodes share theirs. An empty one, or none at all: each node on its own.
@@ -63,15 +61,13 @@ struct Partition {
     Table<NodeId, std::int32_t> label;  // its group, numbered by first appearance;
                                         // the pinned group, where there is one, is -1
     double energy = 0;
-    std::vector<double> joined;  // per edge: share of sampled states with both ends in one group
-    std::vector<double> best_energy_curve;  // after every step of the annealing, over all chains
+    std::vector<double> best_energy_curve;  // after every step, over all chains
     std::uint64_t energies_evaluated = 0;   // groups asked for
 };
 
-// Returns the best partition seen, which is no worse than any start, and the joint probabilities of
-// the states sampled after that. A flip moves one connected component of turned-on edges to the
-// group of one of its neighbours, or to a fresh group; it is accepted with the probability of Barbu
-// and Zhu's Theorem 1 (paper, Eq. 11). Deterministic.
+// Returns the best partition seen, which is no worse than any start. A flip moves one connected
+// component of turned-on edges to the group of one of its neighbours, or to a fresh group; it is
+// accepted with the probability of Barbu and Zhu's Theorem 1 (paper, Eq. 11). Deterministic.
 Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
                              const Table<NodeId, bool>& pinned, const GroupEnergies& energies,
                              const SwendsenWangOptions& options);

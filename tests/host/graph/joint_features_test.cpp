@@ -3,12 +3,12 @@
 
 #include "core/random.h"
 #include "geometry/primitive_shapes.h"
-#include "graph/cut_chain.h"
 #include "graph/greedy_contraction.h"
 #include "graph/joints.h"
 #include "graph/known_links.h"
 #include "graph/stable_objects.h"
 #include "host/geometry/sampled_faces.h"
+#include "host/graph/chain_walk.h"
 #include "host/graph/floor_scene.h"
 #include "kernels/device_harness.h"
 
@@ -252,23 +252,16 @@ TEST(SwendsenWangApart, HoldsInEveryState) {
                                      {}};
         const CutProblem problem(count, edges, pinned, apart);
         EnergyCache cache(energies);
-        CutChain chain(problem, cache, Random(seed));
-        const auto done = [&](bool yes) {
-            if (!yes) cache.evaluate(chain.wanted());
-            return yes;
-        };
-        while (!done(chain.begin())) {
-        }
         std::set<std::vector<std::int32_t>> states;
-        for (int step = 0; step < 2000; ++step) {
-            while (!done(chain.step(1.0))) {
-            }
+        int step = 0;
+        test::walk(problem, cache, Random(seed), 2000, 1.0, [&](const CutChain& chain) {
             states.insert(chain.labels());
             for (std::size_t n = 0; n < apart.size(); ++n)
                 for (const std::int32_t other : apart[n])
                     ASSERT_NE(chain.labels()[n], chain.labels()[other])
                         << "seed " << seed << ", step " << step;
-        }
+            ++step;
+        });
         EXPECT_GT(states.size(), 5u) << "seed " << seed;
     }
 }
