@@ -50,8 +50,8 @@ Table<ObjectId, PieceOf> likely_pieces(std::span<const Joint> joints, const Know
                                        ObjectOf object_of,
                                        TableView<ObjectId, std::uint64_t> surface);
 
-// That an object is one thing and all of it. voxels: solid ones. What the samples of Swendsen-Wang
-// cuts say of its pairs tells less, and nothing more beside it.
+// That an object is one thing and all of it. voxels: as of physics::MassProperties, which the
+// model was fitted on.
 double whole_probability(const PieceOf& piece, const WeakestJoint& weakest, std::uint64_t voxels);
 
 }  // namespace topple::graph

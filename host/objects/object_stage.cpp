@@ -56,15 +56,10 @@ void number_objects(ObjectStage& out) {
 // What objects may be pieces of, and whether they may be several.
 void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
                    const SolidCells& cells, ObjectStage& out) {
-    // The voxels that the surface of each was seen in, and all.
+    // The voxels that the surface of each was seen in.
     Table<PrimitiveId, std::uint64_t> seen(out.object_of_primitive.size(), 0);
-    Table<ObjectId, std::uint64_t> solid(out.objects.size(), 0);
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t p = cells.primitive[n];
-        if (p < 0) continue;
-        ++solid[out.object_of_primitive[p]];
-        if (cells.basis[n] == Basis::surface) ++seen[p];
-    }
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (cells.primitive[n] >= 0 && cells.basis[n] == Basis::surface) ++seen[cells.primitive[n]];
     Table<ObjectId, std::uint64_t> of_objects(out.objects.size(), 0);  // none of the ground
     for (std::size_t p = 0; p < seen.size(); ++p) {
         const ObjectId o = out.object_of_primitive[p];
@@ -84,7 +79,9 @@ void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks
         const bool known = parts.size() > 1 && std::ranges::all_of(parts, [&](std::int32_t p) {
                                return nodes.one_object(parts.front(), p) == true;
                            });
-        object.agreement = known ? 1 : graph::whole_probability(pieces[o], weakest[o], solid[o]);
+        object.agreement =
+            known ? 1
+                  : graph::whole_probability(pieces[o], weakest[o], object.candidate.body.voxels);
     }
 }
 
