@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/place.h"
 #include "topple/scene.h"
 
 namespace topple {
@@ -76,9 +77,7 @@ struct BoundaryCells {
     // visit(array...) for each array that has a value for each voxel, the same one of all of these.
     template <class Visit, class... Cells>
     static void each_array(const Visit& visit, Cells&... of) {
-        visit(of.i...);
-        visit(of.j...);
-        visit(of.k...);
+        each_place_array(visit, of...);
         visit(of.primitive...);
         for (std::size_t s = 0; s < slots; ++s) visit(of.slot[s]...);
         visit(of.form...);

@@ -35,6 +35,13 @@ constexpr Vec3 middle_of(const Place& at, double voxel_m) {
 constexpr Place place_of(const auto& all, std::size_t n) {
     return {all.i[n], all.j[n], all.k[n]};
 }
+// visit(array...) for each of the three arrays, the same one of all.
+template <class Visit, class... All>
+constexpr void each_place_array(const Visit& visit, All&... of) {
+    visit(of.i...);
+    visit(of.j...);
+    visit(of.k...);
+}
 // Of those that are sorted by place, the first one at a place or beyond.
 constexpr std::size_t first_at(const auto& all, const Place& at) {
     std::size_t low = 0, high = all.size();

@@ -32,9 +32,7 @@ struct SolidCells {
     // visit(array...) for each array that has a value for each cell, the same one of all of these.
     template <class Visit, class... Cells>
     static void each_array(const Visit& visit, Cells&... of) {
-        visit(of.i...);
-        visit(of.j...);
-        visit(of.k...);
+        each_place_array(visit, of...);
         visit(of.primitive...);
         visit(of.basis...);
     }

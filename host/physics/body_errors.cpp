@@ -144,15 +144,11 @@ std::map<std::int32_t, double> thicknesses(const SolidCells& cells, std::span<co
 std::vector<VolumeError> volume_errors(const SolidCells& cells, const BoundaryCells& boundary) {
     std::vector<bool> bounded(cells.size(), false);
     std::vector<double> shares(cells.size(), 1.0);
-    std::size_t n = 0;
-    for (std::size_t b = 0; b < boundary.size(); ++b) {
-        const std::tuple at(boundary.i[b], boundary.j[b], boundary.k[b]);
-        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        if (n == cells.size() || std::tie(cells.i[n], cells.j[n], cells.k[n]) != at) continue;
+    solids::each_bounded_cell(cells, boundary, [&](std::size_t b, std::size_t n) {
         bounded[n] = true;
         if (cells.primitive[n] == boundary.primitive[b])
             shares[n] = static_cast<double>(boundary.share[b]) / BoundaryCells::whole;
-    }
+    });
     std::vector<Side> sides;
     add_patches(boundary, cells.voxel_m, sides);
     add_unseen_sides(cells, bounded, sides);

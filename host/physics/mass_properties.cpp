@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <tuple>
 
 #include "core/short_number.h"
 #include "device/queue.h"
 #include "physics/bodies.h"
 #include "segmented_sum.hpp"
+#include "solids/solid_places.h"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -30,17 +30,11 @@ struct Moments {
 SolidCells whole_cells(const SolidCells& cells, const BoundaryCells& boundary,
                        std::vector<Moments>& moments) {
     SolidCells out = cells;
-    std::size_t n = 0;
-    for (std::size_t b = 0; b < boundary.size(); ++b) {
-        const std::tuple at(boundary.i[b], boundary.j[b], boundary.k[b]);
-        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        if (n == cells.size()) break;
-        if (std::tie(cells.i[n], cells.j[n], cells.k[n]) != at ||
-            cells.primitive[n] != boundary.primitive[b])
-            continue;
+    solids::each_bounded_cell(cells, boundary, [&](std::size_t b, std::size_t n) {
+        if (cells.primitive[n] != boundary.primitive[b]) return;
         out.primitive[n] = -1;
         ++moments[cells.primitive[n]].parts;
-    }
+    });
     return out;
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "physics/part_hulls.h"
 
-#include <tuple>
 #include <utility>
 
 #include "physics/merge_close_points.h"
 #include "physics/qhull.h"
 #include "solids/cell_shape.h"
+#include "solids/solid_places.h"
 
 namespace topple::physics {
 
@@ -14,16 +14,13 @@ PartHulls part_hulls(const SolidCells& cells, const BoundaryCells& boundary,
                      const std::vector<bool>& wanted, ThreadPool& threads) {
     SolidCells whole = cells;
     std::vector<std::vector<std::size_t>> parts(wanted.size());
-    std::size_t n = 0;
     for (std::size_t b = 0; b < boundary.size(); ++b) {
         const auto p = static_cast<std::size_t>(boundary.primitive[b]);
         if (wanted[p]) parts[p].push_back(b);
-        const std::tuple at(boundary.i[b], boundary.j[b], boundary.k[b]);
-        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        if (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) == at &&
-            cells.primitive[n] == boundary.primitive[b])
-            whole.primitive[n] = -1;
     }
+    solids::each_bounded_cell(cells, boundary, [&](std::size_t b, std::size_t n) {
+        if (cells.primitive[n] == boundary.primitive[b]) whole.primitive[n] = -1;
+    });
     for (std::int32_t& p : whole.primitive)
         if (p >= 0 && !wanted[p]) p = -1;
     const auto coarse = voxel_hulls(whole, static_cast<std::int32_t>(wanted.size()));

@@ -12,12 +12,13 @@
 #include <vector>
 
 #include "core/field_rules.h"
+#include "core/place.h"
 #include "geometry/manhattan.h"
 #include "scale/thinned_bin.h"
 
 namespace topple::tiles {
 
-using Voxel = std::array<std::int32_t, 3>;
+using Voxel = Place;
 
 // A box of voxels in the grid frame: [low, high) per axis.
 struct VoxelBox {

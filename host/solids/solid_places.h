@@ -7,6 +7,7 @@
 #include "core/boundary_cells.h"
 #include "core/rows.h"
 #include "core/solid_cells.h"
+#include "solids/matching.h"
 
 namespace topple::solids {
 
@@ -26,6 +27,14 @@ void each_solid_place(const SolidCells& cells, const BoundaryCells& boundary, co
         visit(at, is_cell ? n : no_cell, first, m);
         n += is_cell;
     }
+}
+
+// Calls visit(b, n) for each entry b of the boundary that lies in a cell, n.
+template <class Visit>
+void each_bounded_cell(const SolidCells& cells, const BoundaryCells& boundary, const Visit& visit) {
+    each_match(
+        boundary.size(), [&](std::size_t b) { return place_of(boundary, b); }, cells.size(),
+        [&](std::size_t n) { return place_of(cells, n); }, visit);
 }
 
 // The patches that were seen on each primitive.
