@@ -38,9 +38,6 @@ Vec3 normal_of(const Surfels& s, std::size_t n) {
 Vec3 place_of(const Surfels& s, std::size_t n) {
     return {s.x[n], s.y[n], s.z[n]};
 }
-void add(const Vec3& from, Vec3& to) {
-    for (std::size_t a = 0; a < 3; ++a) to[a] += from[a];
-}
 
 std::vector<Storey> storeys_of(const Surfels& s, const Vec3& up) {
     double low = INFINITY, high = -INFINITY;
@@ -74,11 +71,7 @@ struct MeanPlane {
         return flatness > flat || (sheetness > even_sheet && against < most_against);
     }
     // Level, along an upright face.
-    Vec3 level_axis(const Vec3& up) const {
-        const Vec3 along = cross(up, normal);
-        const double length = std::hypot(along[0], along[1], along[2]);
-        return {along[0] / length, along[1] / length, along[2] / length};
-    }
+    Vec3 level_axis(const Vec3& up) const { return unit_or_zero(cross(up, normal)); }
 };
 
 // The normals of each plane become unit means, of what was seen from both sides those along its
@@ -123,8 +116,8 @@ std::vector<MeanPlane> mean_planes(const Surfels& s, const std::vector<std::int3
         if (label[n] < 0) continue;
         MeanPlane& p = out[label[n]];
         p.area_m2 += s.area_m2;
-        add(normal_of(s, n), p.normal);
-        add(place_of(s, n), p.point);
+        p.normal = along(p.normal, 1, normal_of(s, n));
+        p.point = along(p.point, 1, place_of(s, n));
         const double height = dot(up, place_of(s, n));
         p.lowest_m = std::min(p.lowest_m, height);
         p.highest_m = std::max(p.highest_m, height);
