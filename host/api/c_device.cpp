@@ -34,9 +34,20 @@ int set(topple_status* status, int code, std::string_view message) noexcept {
 }
 
 int set(topple_status* status, const Error& error) noexcept {
-    constexpr std::array codes{TOPPLE_ERROR_INPUT, TOPPLE_ERROR_USAGE, TOPPLE_ERROR_DEVICE,
-                               TOPPLE_ERROR_CANCELLED};
-    return set(status, codes[static_cast<std::size_t>(error.kind())], error.what());
+    const auto code = [&] {
+        switch (error.kind()) {
+            case ErrorKind::input:
+                return TOPPLE_ERROR_INPUT;
+            case ErrorKind::usage:
+                return TOPPLE_ERROR_USAGE;
+            case ErrorKind::device:
+                return TOPPLE_ERROR_DEVICE;
+            case ErrorKind::cancelled:
+                return TOPPLE_ERROR_CANCELLED;
+        }
+        return TOPPLE_ERROR_INTERNAL;
+    };
+    return set(status, code(), error.what());
 }
 
 namespace {

@@ -109,7 +109,7 @@ function howSureText(object) {
   if (mass) parts.push(`mass \u00b1 ${share(mass)}`);
   const barrier = ratio(object.barrier_error_J, object.barrier_J);
   if (barrier) parts.push(barrier >= 1 ? 'barrier within its error of nothing' : `barrier \u00b1 ${share(barrier)}`);
-  return parts.length && `How sure: ${parts.join('; ')}.`;
+  return parts.length > 0 ? `How sure: ${parts.join('; ')}.` : '';
 }
 
 // "a piece of object 5 (86 % likely)"; "" where it is likelier a thing of its own.
