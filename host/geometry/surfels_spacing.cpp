@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "core/random.h"
+#include "core/place_hash.h"
 #include "core/ranked.h"
 #include "geometry/surfels.h"
 
@@ -27,25 +27,23 @@ constexpr double around_share = 0.38, surface_part = 0.75;
 constexpr double area_spacings = 40;
 constexpr std::size_t least_in_block = 6;
 
-// A well mixed number of a place, the same whatever the place's number in the cloud.
-std::uint64_t hash_of(std::int64_t x, std::int64_t y, std::int64_t z) {
-    const auto mixed = [](std::uint64_t seed, std::int64_t v) {
-        return Random(seed ^ static_cast<std::uint64_t>(v)).bits();
-    };
-    return mixed(mixed(mixed(0, x), y), z);
+std::uint64_t hash_at(const CloudView& cloud, std::size_t i) {
+    return place_hash(cloud.x[i], cloud.y[i], cloud.z[i]);
 }
-std::uint64_t place_hash(const CloudView& cloud, std::size_t i) {
-    const auto bits = [](float v) { return std::int64_t{std::bit_cast<std::int32_t>(v + 0.0f)}; };
-    return hash_of(bits(cloud.x[i]), bits(cloud.y[i]), bits(cloud.z[i]));
+// Of places with one hash, whatever their order.
+bool is_before(const CloudView& cloud, std::size_t i, std::size_t j) {
+    return std::tuple(cloud.x[i], cloud.y[i], cloud.z[i]) <
+           std::tuple(cloud.x[j], cloud.y[j], cloud.z[j]);
 }
 
 // Points at that many different places, evenly over the points: those of the lowest hashes.
 std::vector<std::size_t> sample_places(const CloudView& cloud, std::size_t samples) {
     std::map<std::uint64_t, std::size_t> lowest;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const std::uint64_t hash = place_hash(cloud, i);
-        if (lowest.size() == samples && hash >= lowest.rbegin()->first) continue;
-        lowest.emplace(hash, i);
+        const std::uint64_t hash = hash_at(cloud, i);
+        if (lowest.size() == samples && hash > lowest.rbegin()->first) continue;
+        std::size_t& point = lowest.emplace(hash, i).first->second;
+        if (is_before(cloud, i, point)) point = i;
         if (lowest.size() > samples) lowest.erase(std::prev(lowest.end()));
     }
     std::vector<std::size_t> out;
@@ -67,10 +65,11 @@ std::vector<std::size_t> sample_area(const CloudView& cloud, std::size_t samples
         const std::uint64_t block =
             hash_of(index(cloud.x[i]), index(cloud.y[i]), index(cloud.z[i]));
         if (blocks.size() == tried * samples && block > blocks.rbegin()->first) continue;
-        const std::uint64_t place = place_hash(cloud, i);
+        const std::uint64_t place = hash_at(cloud, i);
         Block& b = blocks.try_emplace(block, Block{place, i, 0}).first->second;
         ++b.count;
-        if (place < b.lowest) b.lowest = place, b.point = i;
+        if (place < b.lowest || (place == b.lowest && is_before(cloud, i, b.point)))
+            b.lowest = place, b.point = i;
         if (blocks.size() > tried * samples) blocks.erase(std::prev(blocks.end()));
     }
     std::vector<std::size_t> out;
@@ -173,7 +172,7 @@ PointSpacing point_spacing(const CloudView& cloud) {
     const std::size_t n = cloud.size();
     if (n < 2) return out;
     // Brute force over a sample: the clouds that come here have at most some 10^7 points.
-    const std::size_t samples = std::clamp<std::size_t>(100'000'000 / n, 64, 256);
+    const std::size_t samples = std::clamp<std::size_t>(100'000'000 / n, 64, 1024);
     const std::vector<Spacings> of_points = look_around(cloud, sample_places(cloud, samples));
     out.nearest_m = share_of(of_points, &Spacings::first, 0.5);
     if (out.nearest_m <= 0) return out;

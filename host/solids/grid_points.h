@@ -4,10 +4,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "core/place_hash.h"
 #include "topple/cloud_view.h"
 #include "topple/input.h"
 
@@ -30,10 +30,7 @@ class GridPoints {
     }
     // Every so many of them, the same ones in whatever order they come.
     bool is_chosen(std::size_t n, std::size_t step) const {
-        std::uint64_t mixed = 0;
-        for (const float v : {x_[n], y_[n], z_[n]})
-            mixed = (mixed ^ std::bit_cast<std::uint32_t>(v)) * 0x9e3779b97f4a7c15U;
-        return (mixed >> 32) % step == 0;
+        return (place_hash(x_[n], y_[n], z_[n]) >> 32) % step == 0;
     }
 
   private:
