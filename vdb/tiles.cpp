@@ -131,21 +131,17 @@ SolidCells VoxelScene::solid_cells() const {
 SolidVoxels solid_voxels(const VoxelFrame& frame, const SolidCells& cells,
                          std::span<const std::int32_t> object_of_primitive) {
     SolidVoxels out;
-    const auto& rows = frame.grid_from_input;
     const std::size_t count = cells.size();
     for (auto* values : {&out.x, &out.y, &out.z}) values->resize(count);
     out.object.resize(count);
     out.state.resize(count);
     for (std::size_t n = 0; n < count; ++n) {
         const double v = frame.voxel_m;
-        const double p[3] = {(cells.i[n] + 0.5) * v, (cells.j[n] + 0.5) * v,
-                             (cells.k[n] + 0.5) * v};
-        const auto coordinate = [&](int a) {
-            return static_cast<float>(rows[0][a] * p[0] + rows[1][a] * p[1] + rows[2][a] * p[2]);
-        };
-        out.x[n] = coordinate(0);
-        out.y[n] = coordinate(1);
-        out.z[n] = coordinate(2);
+        const Vec3 p = frame.input_of(
+            {(cells.i[n] + 0.5) * v, (cells.j[n] + 0.5) * v, (cells.k[n] + 0.5) * v});
+        out.x[n] = static_cast<float>(p[0]);
+        out.y[n] = static_cast<float>(p[1]);
+        out.z[n] = static_cast<float>(p[2]);
         const auto primitive = static_cast<std::size_t>(cells.primitive[n]);
         const bool known = cells.primitive[n] >= 0 && primitive < object_of_primitive.size();
         out.object[n] = known ? object_of_primitive[primitive] : -1;

@@ -298,6 +298,9 @@ VoxelScene::VoxelScene(VoxelScene&&) noexcept = default;
 const VoxelFrame& VoxelScene::frame() const {
     return grids_->frame;
 }
+void VoxelScene::set_origin(const Vec3& origin_m) {
+    grids_->frame.origin_m = origin_m;
+}
 bool VoxelScene::in_bounds(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return grids_->leaves.in_box({i >> 3, j >> 3, k >> 3});
 }

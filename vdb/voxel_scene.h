@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/rotation.h"
 #include "core/solid_cells.h"
 #include "core/space_map.h"
 #include "device/device.h"
@@ -20,11 +21,25 @@
 namespace topple::vdb {
 
 // How voxels lie in the input's frame: voxel (i, j, k) is centred at R' * ((i, j, k) + 0.5) *
-// voxel_m, with R = grid_from_input, a rotation whose third row is up.
+// voxel_m + origin_m, with R = grid_from_input, a rotation whose third row is up.
 struct VoxelFrame {
     double voxel_m = 0.02;
-    std::array<Vec3, 3> grid_from_input{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    Rotation grid_from_input{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    Vec3 origin_m{};
+    Vec3 grid_of(const Vec3& place) const {
+        return turned(grid_from_input, minus(place, origin_m));
+    }
+    Vec3 input_of(const Vec3& place) const {
+        return plus(turned_back(grid_from_input, place), origin_m);
+    }
 };
+
+// That of the grid frame, which a transform of the input's leads to.
+inline VoxelFrame grid_frame(const Mat4& grid_from_input, double voxel_m) {
+    const Rotation rotation = rotation_of(grid_from_input);
+    const Vec3 to{grid_from_input[3], grid_from_input[7], grid_from_input[11]};
+    return {voxel_m, rotation, opposite(turned_back(rotation, to))};
+}
 
 enum class State : std::uint8_t { empty = 0, surface = 1, invisible = 2, completed = 3 };
 
@@ -85,6 +100,8 @@ class VoxelScene {
     void put_label(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive);
 
     const VoxelFrame& frame() const;
+    // Of points whose coordinates were reckoned from there.
+    void set_origin(const Vec3& origin_m);
 
     // Whether a voxel lies within the scene's bounds, rounded outwards to whole leaves.
     bool in_bounds(std::int32_t i, std::int32_t j, std::int32_t k) const;

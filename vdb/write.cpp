@@ -139,7 +139,7 @@ openvdb::math::Transform::Ptr VoxelScene::Grids::transform() const {
     for (int a = 0; a < 3; ++a) {
         for (int d = 0; d < 3; ++d) m(a, d) = frame.grid_from_input[a][d] * frame.voxel_m;
     }
-    for (int d = 0; d < 3; ++d) m(3, d) = 0.5 * (m(0, d) + m(1, d) + m(2, d));
+    for (int d = 0; d < 3; ++d) m(3, d) = 0.5 * (m(0, d) + m(1, d) + m(2, d)) + frame.origin_m[d];
     return openvdb::math::Transform::createLinearTransform(m);
 }
 

@@ -20,4 +20,9 @@ inline Vec3 turned_back(const Rotation& r, const Vec3& v) {
     return along(along(along({}, v[0], r[0]), v[1], r[1]), v[2], r[2]);
 }
 
+// By a rigid transform.
+inline Vec3 transformed(const Mat4& m, const Vec3& v) {
+    return plus(turned(rotation_of(m), v), {m[3], m[7], m[11]});
+}
+
 }  // namespace topple

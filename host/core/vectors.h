@@ -17,6 +17,9 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 inline Vec3 minus(const Vec3& a, const Vec3& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+inline Vec3 plus(const Vec3& a, const Vec3& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
 inline Vec3 opposite(const Vec3& a) {
     return {-a[0], -a[1], -a[2]};
 }

@@ -88,7 +88,7 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
         ObjectSurface& to = out[n];
         to.object = objects[n].front().object;
         auto shaded = solids::shaded(mesh, boundary.patches);
-        for (Vec3& v : shaded.vertex) to.vertex.push_back(turned_back(frame.grid_from_input, v));
+        for (Vec3& v : shaded.vertex) to.vertex.push_back(frame.input_of(v));
         for (Vec3& v : shaded.normal) to.normal.push_back(turned_back(frame.grid_from_input, v));
         to.triangle = std::move(shaded.triangle);
         for (const solids::Facet& f : mesh.facet) to.primitive.push_back(f.primitive);

@@ -80,7 +80,7 @@ Bodies bodies_of(const Scene& scene, const SolidScene& solids, ThreadPool& threa
         body.object = object.id;
         body.fixed = object.grounded;
         body.mass_kg = object.mass_kg;
-        body.center_m = turned(rotation, object.center_of_mass_m);
+        body.center_m = transformed(scene.manhattan_from_input, object.center_of_mass_m);
         body.inertia_kg_m2 = turned_inertia(rotation, object.inertia_kg_m2);
         out.push_back(std::move(body));
     }
@@ -159,8 +159,8 @@ SimScene sim_scene(const Scene& scene, const SolidScene& solids, bool visuals, u
     // Surfaces need nothing of the bodies.
     auto surfaces = std::async(threads == 1 ? std::launch::deferred : std::launch::async, [&] {
         return object_surfaces(scene, solids.with_strays(), solids.boundary(),
-                               {solids.voxel_m(), rotation_of(scene.manhattan_from_input)}, threads,
-                               SurfaceDetail::simulated);
+                               vdb::grid_frame(scene.manhattan_from_input, solids.voxel_m()),
+                               threads, SurfaceDetail::simulated);
     });
     SimScene out = without_visuals(scene, solids, pool);
     add_visuals(out, scene, surfaces.get());

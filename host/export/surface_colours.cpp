@@ -12,7 +12,7 @@ namespace {
 using Cell = std::array<std::int32_t, 3>;
 
 Cell cell_at(const vdb::VoxelFrame& frame, const ScenePoints& points, std::size_t i) {
-    const Vec3 p = turned(frame.grid_from_input, {points.x[i], points.y[i], points.z[i]});
+    const Vec3 p = frame.grid_of({points.x[i], points.y[i], points.z[i]});
     Cell out{};
     for (std::size_t a = 0; a < 3; ++a) {
         out[a] = static_cast<std::int32_t>(std::clamp(std::floor(p[a] / frame.voxel_m), -1e9, 1e9));

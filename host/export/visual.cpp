@@ -15,15 +15,16 @@ Rgb8 plain_colour(const Body& body) {
     return io::colour_of(body.fixed && !body.held ? -1 : body.object);
 }
 
-Visual visual_of(const ObjectSurface& surface, const Body& body, const Rotation& world_from_input) {
+Visual visual_of(const ObjectSurface& surface, const Body& body, const Mat4& world_from_input) {
     Visual out;
     const Vec3 by = minus(body.moved_m, body.center_m);
     out.vertex.reserve(surface.vertex.size());
     out.normal.reserve(surface.normal.size());
     out.colour.reserve(surface.vertex.size());
     for (const Vec3& v : surface.vertex)
-        out.vertex.push_back(along(turned(world_from_input, v), 1, by));
-    for (const Vec3& n : surface.normal) out.normal.push_back(turned(world_from_input, n));
+        out.vertex.push_back(plus(transformed(world_from_input, v), by));
+    for (const Vec3& n : surface.normal)
+        out.normal.push_back(turned(rotation_of(world_from_input), n));
     const Rgb8 plain = plain_colour(body);
     for (std::size_t n = 0; n < surface.vertex.size(); ++n)
         out.colour.push_back(surface.colour.empty() ? plain : surface.colour[n].value_or(plain));
@@ -63,11 +64,11 @@ void add_visuals(SimScene& sim, const Scene& scene, std::span<const ObjectSurfac
     for (const ObjectSurface& surface : surfaces) of.emplace(surface.object, &surface);
     // A surface that was simplified until it is flat holds nothing, which MuJoCo refuses.
     constexpr double least_m3 = 1e-9;
-    const Rotation world_from_input = rotation_of(scene.manhattan_from_input);
     for (Body& body : sim.bodies) {
         if (body.object < 0) continue;
         const auto found = of.find(body.object);
-        if (found != of.end()) body.visual = visual_of(*found->second, body, world_from_input);
+        if (found != of.end())
+            body.visual = visual_of(*found->second, body, scene.manhattan_from_input);
         if (volume_m3(body.visual) < least_m3) body.visual = visual_of_parts(body);
     }
 }

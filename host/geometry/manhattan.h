@@ -18,6 +18,7 @@ struct SceneFrame {
     std::string up_method;     // as Scene::up_method
     std::string note;     // what to know before trusting up, in a sentence; empty where it is sure
     double up_share = 0;  // share of surfels whose normal is within 10 degrees of +-up
+    Vec3 origin_m{};      // of the grid frame, in the input's
 };
 
 struct FrameHints {

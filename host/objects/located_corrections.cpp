@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rotation.h"
 #include "io/text.h"
 
 namespace topple {
@@ -54,12 +55,8 @@ class Finder {
 
   private:
     Vec3 in_voxels(const Vec3& spot) const {
-        Vec3 out{};
-        for (std::size_t a = 0; a < 3; ++a) {
-            const Vec3& axis = frame_.axes[a];
-            out[a] =
-                (axis[0] * spot[0] + axis[1] * spot[1] + axis[2] * spot[2]) / solids_.voxel_m();
-        }
+        Vec3 out = turned(frame_.axes, minus(spot, frame_.origin_m));
+        for (double& x : out) x /= solids_.voxel_m();
         return out;
     }
     void consider(std::size_t n, const Vec3& at, Nearest& best) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/number_text.h"
+#include "core/vectors.h"
 #include "io/text.h"
 #include "points/frame_stream.h"
 #include "points/sensor_places.h"
@@ -101,11 +102,12 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
         options.known_eyes = {scan->eye};
         options.eyes = 1;
         out.camera_up = scan->up;
-        out.notes.push_back(
-            out.cloud.has_viewpoint
-                ? "The cloud was seen from " + position_text(scan->eye) + ", as it says."
-                : "The cloud has no sensor poses, but hides nothing from " +
-                      position_text(scan->eye) + ": it was taken for a single scan from there.");
+        out.notes.push_back(out.cloud.has_viewpoint
+                                ? "The cloud was seen from " +
+                                      position_text(plus(scan->eye, out.origin_m)) + ", as it says."
+                                : "The cloud has no sensor poses, but hides nothing from " +
+                                      position_text(plus(scan->eye, out.origin_m)) +
+                                      ": it was taken for a single scan from there.");
     } else if (out.cloud.has_viewpoint) {
         options.known_eyes = {out.cloud.viewpoint};
     }
@@ -164,7 +166,8 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
                                        "depth frames.";
         out.notes.push_back(
             out.cloud.has_viewpoint
-                ? "From the sensor's place that was given, " + position_text(out.cloud.viewpoint) +
+                ? "From the sensor's place that was given, " +
+                      position_text(plus(out.cloud.viewpoint, out.origin_m)) +
                       ", points would hide others: it is off by some centimetres, or not all of "
                       "the scan is from there. It tells the sides of surfaces, but free space was "
                       "estimated from " +

@@ -15,7 +15,9 @@
 #include "points/frames_fusion.h"
 #include "points/observation.h"
 #include "points/parse_memory.h"
+#include "points/voxel_size.h"
 #include "points/work_check.h"
+#include "points/working_origin.h"
 
 // Depth frames become an observation.
 namespace topple {
@@ -94,6 +96,11 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
         typical_depth(k, out.frames->size(), [&](std::size_t f) { return out.frames->load(f); });
     check_readings(k, out.frames->size(), depth_m, source, out.origin);
     out.cell_m = cell_for_frames(k, depth_m);
+    if (!poses.empty()) {  // the sensor is the origin of a single image
+        out.origin_m =
+            origin_amid_voxels(densest_planes(*out.frames), voxel_for_input(out, options));
+        out.frames = std::make_unique<ReckonedFrames>(std::move(out.frames), out.origin_m);
+    }
     LimitedFusion fusion(out, depth_m, source, options, device.threads().threads());
     geometry::PoseComparison comparison(k, poses, depth_m);
     const auto count = static_cast<double>(out.frames->size());
@@ -120,7 +127,11 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
         tell(added_share + (1 - added_share) * std::min(1.0, ++polled / polls));
     });
     out.own = std::move(fused.cloud);
+    const std::array<std::vector<float>*, 3> columns{&out.own.x, &out.own.y, &out.own.z};
+    for (std::size_t a = 0; a < 3; ++a)
+        for (float& v : *columns[a]) v = static_cast<float>(v + out.origin_m[a]);
     out.cloud = out.own;
+    reckon_from(out.origin_m, out);
     out.viewpoints = std::move(fused.viewpoints);
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
     if (poses.empty()) note_single_frame(out);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/solid_cells.h"
+#include "core/vectors.h"
 #include "device/cancelling.h"
 #include "geometry/surfels.h"
 #include "io/text.h"
@@ -19,7 +20,9 @@
 #include "points/given_attributes.h"
 #include "points/scale_checks.h"
 #include "points/single_scan.h"
+#include "points/voxel_size.h"
 #include "points/work_check.h"
+#include "points/working_origin.h"
 #include "vdb/read_volume.h"
 
 namespace topple {
@@ -75,11 +78,24 @@ void check_attributes(double around_m, Observation& out) {
     out.cloud.red = out.cloud.green = out.cloud.blue = {};
 }
 
+// On steps of 9 %: a sample of other points of the same surface mostly gives the same cells,
+// which would else all shift against the surface, far from the origin by more than a cell.
+geometry::PointSpacing steady(geometry::PointSpacing spacing) {
+    constexpr double steps_per_octave = 8;
+    for (double* m : {&spacing.nearest_m, &spacing.around_m, &spacing.surface_m})
+        if (*m > 0) *m = std::exp2(std::round(std::log2(*m) * steps_per_octave) / steps_per_octave);
+    return spacing;
+}
+
 // All that follows from the points.
 void look_at_cloud(device::Device& device, const ParseOptions& options, Observation& out) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
-    const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
+    // The sensor is the origin of an organised cloud, and a map has voxels of its own.
+    const bool placed = cloud.height > 1 || out.origin == ScanOrigin::map_file;
+    const Vec3 planes = placed ? Vec3{} : densest_planes(cloud);
+    if (!placed) reckon_from(planes, out);
+    const geometry::PointSpacing spacing = steady(geometry::point_spacing(cloud));
     check_spacing(cloud, spacing.nearest_m, out.origin);
     // First, and at once: what is large takes long.
     const bool mesh = out.origin == ScanOrigin::mesh_file;
@@ -90,6 +106,7 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Observat
     out.cell_m = std::clamp(cell_pitches * spacing.nearest_m, least_cell_m, largest_cell_m);
     out.sparse_cell_m = std::max(out.cell_m, cell_pitches * spacing.surface_m);
     out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
+    if (!placed) reckon_from(origin_amid_voxels(planes, voxel_for_input(out, options)), out);
     out.doubts = cloud.notes;
     if (!hint.empty()) out.doubts.insert(out.doubts.begin(), hint);
     // A depth image's gaps are no news.
@@ -115,7 +132,8 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Observat
     std::optional<geometry::SingleScan> scan;
     if (cloud.viewpoint_x.empty()) {
         scan = geometry::find_single_scan(
-            cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
+            cloud, cloud.has_viewpoint ? cloud.viewpoint : minus(out.own.origin_m, out.origin_m),
+            spacing.nearest_m);
     }
     // Reading it took the rest of the stage.
     constexpr double read_share = 0.2;

@@ -46,6 +46,9 @@ constexpr double surfel_cells = 1.85;
 // What every later stage starts from, whatever the input was.
 struct Observation {
     ScanOrigin origin = ScanOrigin::cloud_file;
+    // Where all coordinates but those of `own` are reckoned from, in the input's frame
+    // (working_origin.h).
+    Vec3 origin_m{};
     // The points, in the caller's memory or in `own`: what came from a file or from frames, or lost
     // points that were not finite; then `index` holds the place of each in the arrays or the file.
     CloudView cloud;

@@ -36,7 +36,7 @@ void add_primitives(const SolidParts& parts, const ObjectStage& objects, const T
         out.solid_voxels = body.voxels;
         out.volume_m3 = body.volume_m3;
         out.mass_kg = body.mass_kg;
-        out.center_of_mass_m = to_input(body.center);
+        out.center_of_mass_m = to_input.place(body.center);
         const auto name = objects.told.name_of_part.find(out.id);
         if (name != objects.told.name_of_part.end()) out.name = name->second;
         scene.primitives.push_back(std::move(out));
@@ -46,11 +46,11 @@ void add_primitives(const SolidParts& parts, const ObjectStage& objects, const T
 Landscape turned(const Body& from, const ToInput& to_input) {
     Landscape out = from.poses;
     out.places = from.sliding.places;
-    for (Vec3& corner : out.hull_m) corner = to_input(corner);
-    for (Landscape::Pose& pose : out.poses) pose.up = to_input(pose.up);
+    for (Vec3& corner : out.hull_m) corner = to_input.place(corner);
+    for (Landscape::Pose& pose : out.poses) pose.up = to_input.way(pose.up);
     for (Landscape::Pass& pass : out.passes) {
-        pass.up = to_input(pass.up);
-        for (Vec3& up : pass.border) up = to_input(up);
+        pass.up = to_input.way(pass.up);
+        for (Vec3& up : pass.border) up = to_input.way(up);
     }
     return out;
 }
@@ -71,7 +71,7 @@ DirectedBarrier directed(const Body& from, const ToInput& to_input) {
             out.blow_J.push_back(toppling.blow_barrier_J(way, height));
             out.blow_Ns.push_back(toppling.impulse_Ns(out.blow_J.back(), way, height));
         }
-        out.direction.push_back(to_input(way));
+        out.direction.push_back(to_input.way(way));
         if (std::isnan(from.overturning.hand_height_m)) continue;  // it hangs
         const physics::Toppling::EdgeAhead edge = toppling.edge_ahead(way);
         const physics::TippingPush push =
@@ -94,14 +94,14 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.agreement = from.agreement;
         to.mass_kg = from.candidate.body.mass_kg;
         to.size_m = from.box.size_m;
-        to.box_middle_m = to_input(from.box.middle_m);
+        to.box_middle_m = to_input.place(from.box.middle_m);
         to.piece_probability = from.piece.probability;
         if (from.piece.probability > 0.5)
             to.piece_of = objects.object_of_primitive[from.piece.primitive];
         to.joint_probability = from.weakest.probability;
         to.weakest_joint = {from.weakest.a, from.weakest.b};
         to.mass_model = to_string(from.mass_model);
-        to.center_of_mass_m = to_input(from.candidate.body.center);
+        to.center_of_mass_m = to_input.place(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
         to.mass_error_kg = from.body_error.mass_kg;
         to.center_of_mass_error_m = to_input.errors(from.body_error.center_m);
@@ -115,7 +115,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                 to.center_height_m = from.candidate.body.center[2] - to.support_height_m;
                 to.overturning = from.overturning;
             }
-            to.overturning.direction = to_input(to.overturning.direction);
+            to.overturning.direction = to_input.way(to.overturning.direction);
             if (from.seen_enough()) {
                 // Its force is the push times what its area is to its top's height: errors are as
                 // those of the push, and halved by the root.
@@ -125,7 +125,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                                                 to.overturning.push_N / 2;
             }
             to.mode = physics::to_string(from.instability.mode);
-            to.direction = to_input(from.instability.direction);
+            to.direction = to_input.way(from.instability.direction);
             to.instability = from.instability.curve;
             if (from.seen_enough() && from.toppling)
                 to.barrier_by_direction = directed(from, to_input);
@@ -177,7 +177,7 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
         c.a = pair.a;
         c.b = pair.b;
         c.area_m2 = pair.area_m2;
-        c.normal = to_input(pair.normal);
+        c.normal = to_input.way(pair.normal);
         const bool same = object(pair.a) == object(pair.b);
         c.relation = same ? "fixed" : carries.contains({pair.a, pair.b}) ? "support" : "adjacent";
         c.probability = objects.pair_probability[i];
@@ -189,8 +189,8 @@ void add_fields(const SafetyStage& safety, const ToInput& to_input, Scene& scene
     for (const safety::Disturbance& d : safety.disturbances) {
         FieldSamples samples = d.samples;
         for (std::size_t n = 0; n < samples.x.size(); ++n) {
-            const Vec3 p = to_input({samples.x[n], samples.y[n], samples.z[n]});
-            const Vec3 v = to_input({samples.vx[n], samples.vy[n], samples.vz[n]});
+            const Vec3 p = to_input.place({samples.x[n], samples.y[n], samples.z[n]});
+            const Vec3 v = to_input.way({samples.vx[n], samples.vy[n], samples.vz[n]});
             samples.x[n] = static_cast<float>(p[0]), samples.vx[n] = static_cast<float>(v[0]);
             samples.y[n] = static_cast<float>(p[1]), samples.vy[n] = static_cast<float>(v[1]);
             samples.z[n] = static_cast<float>(p[2]), samples.vz[n] = static_cast<float>(v[2]);
@@ -204,11 +204,11 @@ void add_walks(const SafetyStage& safety, const ToInput& to_input, Scene& scene)
     for (const safety::Disturbance& d : safety.disturbances) {
         if (d.walks.visits.empty()) continue;
         scene.walks = d.walks;
-        scene.walks.corner_m = to_input(d.walks.corner_m);
-        scene.walks.along_x_m = to_input(d.walks.along_x_m);
-        scene.walks.along_y_m = to_input(d.walks.along_y_m);
+        scene.walks.corner_m = to_input.place(d.walks.corner_m);
+        scene.walks.along_x_m = to_input.way(d.walks.along_x_m);
+        scene.walks.along_y_m = to_input.way(d.walks.along_y_m);
         for (auto& path : scene.walks.paths) {
-            for (Vec3& corner : path) corner = to_input(corner);
+            for (Vec3& corner : path) corner = to_input.place(corner);
         }
     }
 }
@@ -340,13 +340,15 @@ void record_run(const device::Device& device, const ParseOptions& options, doubl
 void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
                       const SafetyStage& safety, Scene& scene) {
     const std::array<Vec3, 3>& axes = parts.frame.axes;
-    const ToInput to_input(axes);
+    const ToInput to_input(parts.frame);
     scene.up = axes[2];
     scene.up_method = parts.frame.up_method;
     scene.manhattan_found = parts.frame.found;
-    scene.manhattan_from_input = {
-        axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
-        axes[2][0], axes[2][1], axes[2][2], 0, 0,          0,          0,          1};
+    const Vec3 to = opposite(turned(axes, parts.frame.origin_m));
+    scene.manhattan_from_input = {axes[0][0], axes[0][1], axes[0][2], to[0],  //
+                                  axes[1][0], axes[1][1], axes[1][2], to[1],  //
+                                  axes[2][0], axes[2][1], axes[2][2], to[2],  //
+                                  0,          0,          0,          1};
     add_primitives(parts, objects, to_input, scene);
     add_objects(objects, safety, to_input, scene);
     add_contacts(objects, to_input, scene);

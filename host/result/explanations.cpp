@@ -21,7 +21,8 @@ void explain(const ObjectStage& objects, const ToInput& to_input, Scene& scene) 
         if (from.grounded) continue;
         const physics::Instability& step = from.instability;
         if (step.weakest != Vec3{}) why.azimuth_deg = azimuth_deg(step.weakest);
-        if (step.edge) why.edge_m = {to_input((*step.edge)[0]), to_input((*step.edge)[1])};
+        if (step.edge)
+            why.edge_m = {to_input.place((*step.edge)[0]), to_input.place((*step.edge)[1])};
         why.W_J = object.barrier_J;
         why.S_J = object.release_J;
         if (object.mode == "slide") why.way_m = from.sliding.distance_m;
@@ -44,7 +45,7 @@ void predict_falls(const ObjectStage& objects, const SafetyStage& safety, const 
         const physics::Swept& swept = safety.landings[o].swept;
         object.fall.hits_J = safety.landings[o].hits_J;
         if (o < safety.people_share.size()) object.fall.people_share = safety.people_share[o];
-        object.fall.lands_m = to_input(swept.center);
+        object.fall.lands_m = to_input.place(swept.center);
         object.fall.drop_m = swept.stopped ? 0 : safety.landings[o].drop_m;
         const bool elsewhere = swept.stopped || !safety.landings[o].on_easiest;
         object.fall.lands_on = elsewhere ? -1 : object.why.lands_on;
@@ -53,7 +54,7 @@ void predict_falls(const ObjectStage& objects, const SafetyStage& safety, const 
         const Suggestion& what = safety.advice[o];
         static constexpr std::array kinds{"", "see", "check", "move", "fix"};
         object.advice.kind = kinds[static_cast<std::size_t>(what.kind)];
-        object.advice.move_m = to_input(what.move_m);
+        object.advice.move_m = to_input.way(what.move_m);
         object.advice.risk_J = what.risk_J;
         object.advice.hold_N = what.hold.force_N;
         object.advice.hold_height_m = what.hold.height_m;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/rotation.h"
+#include "geometry/manhattan.h"
 #include "objects/object_stage.h"
 #include "safety/safety_stage.h"
 #include "topple/scene.h"
@@ -13,13 +15,10 @@ namespace topple {
 // From the grid frame to the input's.
 class ToInput {
   public:
-    explicit ToInput(const std::array<Vec3, 3>& axes) : axes_(axes) {}
-    Vec3 operator()(const Vec3& g) const {
-        Vec3 out{};
-        for (std::size_t c = 0; c < 3; ++c)
-            out[c] = g[0] * axes_[0][c] + g[1] * axes_[1][c] + g[2] * axes_[2][c];
-        return out;
-    }
+    explicit ToInput(const geometry::SceneFrame& frame)
+        : axes_(frame.axes), origin_m_(frame.origin_m) {}
+    Vec3 place(const Vec3& g) const { return plus(way(g), origin_m_); }
+    Vec3 way(const Vec3& g) const { return turned_back(axes_, g); }
     // Of standard errors along the grid's axes, those along the input's.
     Vec3 errors(const Vec3& g) const {
         Vec3 out{};
@@ -41,7 +40,8 @@ class ToInput {
     }
 
   private:
-    const std::array<Vec3, 3>& axes_;
+    const Rotation& axes_;
+    const Vec3& origin_m_;
 };
 
 // Clockwise from north, +y of the grid frame, from 0 to 360.

@@ -17,9 +17,13 @@ void take_coordinates(Observation& input, ScenePoints& out) {
         out.blue = std::move(input.own.blue);
         return;
     }
-    out.x.assign(input.cloud.x.begin(), input.cloud.x.end());
-    out.y.assign(input.cloud.y.begin(), input.cloud.y.end());
-    out.z.assign(input.cloud.z.begin(), input.cloud.z.end());
+    const auto as_given = [](const FloatColumn& column, std::vector<float>& to) {
+        const FloatColumn given = column.less(0);
+        to.assign(given.begin(), given.end());
+    };
+    as_given(input.cloud.x, out.x);
+    as_given(input.cloud.y, out.y);
+    as_given(input.cloud.z, out.z);
     const auto& [red, green, blue] = input.given_colours;
     out.red.assign(red.begin(), red.end());
     out.green.assign(green.begin(), green.end());

@@ -96,7 +96,7 @@ std::string upright_pieces_note(const SolidParts& parts, const ObjectStage& obje
                        " that may be " + (one ? "a thing" : "things") + ", and then can fall: ";
     for (std::size_t n = 0; n < std::min(listed, boxes.size()); ++n) {
         const ObjectBox& box = boxes[n];
-        Vec3 top = to_input({box.middle_m[0], box.middle_m[1], box.top_m()});
+        Vec3 top = to_input.place({box.middle_m[0], box.middle_m[1], box.top_m()});
         Vec3 size = box.size_m;
         for (double& v : top) v = two_decimals(v);
         for (double& v : size) v = two_decimals(v);

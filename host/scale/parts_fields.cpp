@@ -123,6 +123,7 @@ void parts_fields(Io& io, Parts& g) {
     io(g.image_height);
     auto& f = g.parts.frame;
     io(f.axes, finite);
+    io(f.origin_m, finite);
     io(f.found);
     io(f.up_method, shown);
     io(f.note, shown);
@@ -158,7 +159,8 @@ FoundParts read_parts(tiles::BinaryReader& file) {
     bool sensed = false;
     file(sensed);
     file.expect(solids.cells.voxel_m == out.voxel_m && voxels.frame.voxel_m == out.voxel_m &&
-                voxels.frame.grid_from_input == out.parts.frame.axes);
+                voxels.frame.grid_from_input == out.parts.frame.axes &&
+                voxels.frame.origin_m == out.parts.frame.origin_m);
     out.parts.solids = scene_of(std::move(solids));
     out.voxels = std::make_shared<vdb::VoxelScene>(voxels);
     if (sensed) out.parts.sensed = out.voxels;

@@ -27,12 +27,20 @@ class Column {
 
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
-    const std::byte* data() const { return first_; }  // of the first value; null: there is none
+    const std::byte* data() const {
+        return first_;
+    }  // of the first value as it is stored; null: there is none
     std::ptrdiff_t stride_bytes() const { return stride_; }
     T operator[](std::size_t i) const {
         T value;
         std::memcpy(&value, first_ + static_cast<std::ptrdiff_t>(i) * stride_, sizeof(value));
-        return value;
+        return static_cast<T>(value - less_);
+    }
+    // Of the same bytes, with values that are each less by that than what is stored.
+    Column less(T by) const {
+        Column out = *this;
+        out.less_ = by;
+        return out;
     }
 
     class Iterator {
@@ -67,6 +75,7 @@ class Column {
     const std::byte* first_ = nullptr;
     std::size_t size_ = 0;
     std::ptrdiff_t stride_ = sizeof(T);
+    T less_{};
 };
 using FloatColumn = Column<float>;
 using ByteColumn = Column<std::uint8_t>;

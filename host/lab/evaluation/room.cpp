@@ -79,20 +79,15 @@ SolidVoxels never_seen_empty(const Room& room, const scenes::Domain& domain) {
     const vdb::VoxelScene& voxels = *room.parse.voxels;
     const vdb::Tiles tiles = voxels.tiles(true);
     const std::vector<std::uint8_t> states = voxels.states(tiles);
-    const auto& axes = voxels.frame().grid_from_input;
+    const vdb::VoxelFrame& frame = voxels.frame();
     SolidVoxels out;
     for (std::size_t at = 0; at < states.size(); ++at) {
         if (states[at] == static_cast<std::uint8_t>(vdb::State::empty)) continue;
         const std::size_t leaf = at / 512;
         const auto local = static_cast<std::int32_t>(at % 512);
-        const double g[3] = {tiles.x[leaf] + (local >> 6) + 0.5,
-                             tiles.y[leaf] + (local >> 3 & 7) + 0.5,
-                             tiles.z[leaf] + (local & 7) + 0.5};
-        Vec3 own{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            own[c] = voxels.frame().voxel_m *
-                     (g[0] * axes[0][c] + g[1] * axes[1][c] + g[2] * axes[2][c]);
-        }
+        const Vec3 own = frame.input_of({frame.voxel_m * (tiles.x[leaf] + (local >> 6) + 0.5),
+                                         frame.voxel_m * (tiles.y[leaf] + (local >> 3 & 7) + 0.5),
+                                         frame.voxel_m * (tiles.z[leaf] + (local & 7) + 0.5)});
         const Vec3 p = moved(room.input_from_grid, own);
         if (!domain(room.world.to_room(p))) continue;
         put(out, static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));

@@ -33,8 +33,9 @@ struct Said {
     }
     std::string sentence() {
         objects.objects = {body, Body{}};
-        const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-        explain(objects, ToInput(axes), scene);
+        geometry::SceneFrame frame{};
+        frame.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+        explain(objects, ToInput(frame), scene);
         SolidParts parts;
         parts.solids =
             std::make_shared<const SolidScene>(SolidCells{}, std::vector<Role>{role, Role::none});

@@ -43,10 +43,10 @@ inline PointCloud cloud_of_room(std::uint64_t seed) {
 // What a parse says of a place, metres.
 inline vdb::State state_at(const ParseResult& result, const Vec3& place) {
     const vdb::VoxelFrame frame = result.voxels->frame();
+    const Vec3 in_grid = frame.grid_of(place);
     std::array<std::int32_t, 3> at{};
     for (std::size_t a = 0; a < 3; ++a)
-        at[a] = static_cast<std::int32_t>(
-            std::floor(dot(frame.grid_from_input[a], place) / frame.voxel_m));
+        at[a] = static_cast<std::int32_t>(std::floor(in_grid[a] / frame.voxel_m));
     return result.voxels->state_at(at[0], at[1], at[2]);
 }
 
