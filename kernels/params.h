@@ -1,31 +1,6 @@
 // Parameters of every kernel, shared by kernels and host. 4-byte scalars only, 128 bytes at most;
 // the generated headers assert the offsets. Each struct stands under the name of its kernel.
 
-// triad
-STRUCT(TriadParams) {
-    uint count;   // elements
-    float scale;
-} STRUCT_END(TriadParams)
-
-// multiply_add
-STRUCT(MultiplyAddParams) {
-    uint count;   // elements, a multiple of the items per work-item
-    uint rounds;  // multiply-adds per element
-} STRUCT_END(MultiplyAddParams)
-
-// divide
-STRUCT(DivideParams) {
-    uint count;   // elements, a multiple of the items per work-item
-    uint rounds;  // divisions per element
-} STRUCT_END(DivideParams)
-
-// gather
-STRUCT(GatherParams) {
-    uint count;   // elements, a multiple of the items per work-item
-    uint rounds;  // words per element
-    uint shift;   // of a state to a place in the table, 1 to 31
-} STRUCT_END(GatherParams)
-
 // support_function
 STRUCT(SupportParams) {
     uint vertex_count;     // of this primitive

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 #include "perf/stage_cases.h"
 
 // The disturbance fields of the stages' room, host and kernels together.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 #include "perf/standing_objects.h"
 
 // Pose landscapes as grouping and the barriers of objects use them, host and kernels together.

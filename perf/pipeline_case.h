@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lab/scores/score.h"
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 
 namespace topple::perf {
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "lab/temporary_folder.h"
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 #include "topple/parse.h"
 
 namespace topple::perf {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
-#include "perf/stopwatch.h"
+#include "perf/kernels/stopwatch.h"
+#include "topple/kernels/device.h"
 
 namespace topple::perf {
 

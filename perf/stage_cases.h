@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lab/scan/depth_camera.h"
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 #include "points/observation.h"
 #include "solids/surfaces.h"
 #include "vdb/voxel_scene.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
 #include "physics/part_hulls.h"
 #include "physics/sliding.h"
+#include "topple/kernels/device.h"
 
 // Things of voxels that stand, for barriers to be timed on and to be judged by simulators.
 namespace topple::simulation {

@@ -3,28 +3,31 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <optional>
 
+#include "perf/cases/cases.h"
 #include "perf/field_stages.h"
+#include "perf/kernels/report.h"
 #include "perf/landscape_stages.h"
-#include "perf/report.h"
 #include "perf/stage_cases.h"
-#include "topple/device.h"
-#include "topple/error.h"
 
 namespace topple::perf {
 namespace {
 
-bool is_probe(const std::string& name) {
-    return name == "triad" || name == "multiply_add" || name == "divide" || name == "gather";
-}
-
-bool wanted(const SuiteOptions& a, const std::string& name) {
-    return a.filters.empty() ||
-           std::any_of(a.filters.begin(), a.filters.end(),
-                       [&](const std::string& f) { return name.find(f) != std::string::npos; });
+void print_score(const scenes::Score& s) {
+    std::printf(
+        "\nscore: parts mIoU %.3f, Hamming %.3f, missing %.3f, false alarm %.3f; objects mIoU "
+        "%.3f\n",
+        s.parts.miou, s.parts.hamming, s.parts.missing, s.parts.false_alarm, s.objects.miou);
+    std::printf(
+        "       volume precision %.3f, recall %.3f; fixed recall %.3f, precision %.3f; support "
+        "recall %.3f, precision %.3f; "
+        "gravity %.2f deg\n",
+        s.volume.precision.value, s.volume.recall.value, s.relations.fixed_recall.value,
+        s.relations.fixed_precision.value, s.relations.support_recall.value,
+        s.relations.support_precision.value, s.gravity_deg);
+    std::fflush(stdout);
 }
 
 // The stages' scene is made once, on the first device.
@@ -32,7 +35,7 @@ class Stages {
   public:
     explicit Stages(const SuiteOptions& arguments) : a_(arguments) {}
 
-    bool wanted() const { return any(stage_names()) || any(field_names()); }
+    bool any_wanted() const { return any(stage_names()) || any(field_names()); }
     std::vector<Result> measure(device::Device& device) {
         if (!scene_) scene_ = make_stage_scene(device);
         std::vector<Result> results;
@@ -43,7 +46,7 @@ class Stages {
             const auto fields = measure_fields(device, *scene_, a_.stage_runs);
             results.insert(results.end(), fields.begin(), fields.end());
         }
-        std::erase_if(results, [&](const Result& r) { return !perf::wanted(a_, r.name); });
+        std::erase_if(results, [&](const Result& r) { return !wanted(a_.filters, r.name); });
         return results;
     }
 
@@ -51,7 +54,7 @@ class Stages {
     bool any(const std::vector<std::string>& names) const {
         return a_.stage_runs > 0 &&
                std::any_of(names.begin(), names.end(),
-                           [&](const std::string& name) { return perf::wanted(a_, name); });
+                           [&](const std::string& name) { return wanted(a_.filters, name); });
     }
 
     const SuiteOptions& a_;
@@ -60,34 +63,30 @@ class Stages {
 
 bool landscapes_wanted(const SuiteOptions& a) {
     const auto names = landscape_names();
-    return a.stage_runs > 0 &&
-           std::any_of(names.begin(), names.end(), [&](const auto& n) { return wanted(a, n); });
+    return a.stage_runs > 0 && std::any_of(names.begin(), names.end(),
+                                           [&](const auto& n) { return wanted(a.filters, n); });
 }
 
 std::vector<Result> measure_backend(const std::shared_ptr<device::Device>& device,
                                     const SuiteOptions& a, Stages& stages) {
-    std::vector<Result> results;
     const bool landscapes = landscapes_wanted(a);
-    const bool any_kernel = stages.wanted() || landscapes ||
-                            std::any_of(all_cases().begin(), all_cases().end(),
-                                        [&](const Case& c) { return wanted(a, c.name); });
-    for (const Case& test : all_cases()) {
-        // The probes are the yardstick of all others.
-        if (!wanted(a, test.name) && !(a.roofline && any_kernel && is_probe(test.name))) continue;
-        results.push_back(measure(*device, test, a.measure));
-    }
-    if (stages.wanted()) {
+    const bool any =
+        stages.any_wanted() || landscapes ||
+        std::ranges::any_of(all_cases(), [&](const Case& c) { return wanted(a.filters, c.name); });
+    std::vector<Result> results =
+        measure_cases(*device, all_cases(), a.filters, a.roofline && any, a.measure);
+    if (stages.any_wanted()) {
         const auto whole = stages.measure(*device);
         results.insert(results.end(), whole.begin(), whole.end());
     }
     if (landscapes) {
         const auto whole = measure_landscapes(*device, a.stage_runs);
         std::copy_if(whole.begin(), whole.end(), std::back_inserter(results),
-                     [&](const Result& r) { return wanted(a, r.name); });
+                     [&](const Result& r) { return wanted(a.filters, r.name); });
     }
     apply_roofline(results);
     print_results(results);
-    if ((wanted(a, "pipeline") || wanted(a, "export")) && a.pipeline.runs > 0) {
+    if ((wanted(a.filters, "pipeline") || wanted(a.filters, "export")) && a.pipeline.runs > 0) {
         scenes::Score score;
         const auto whole = measure_pipeline(device, a.pipeline, score);
         print_results(whole);
@@ -109,44 +108,14 @@ std::vector<std::string> case_names() {
     return out;
 }
 
-bool hashes_agree(const std::vector<Result>& results) {
-    std::map<std::string, const Result*> first;
-    bool agree = true;
-    for (const Result& r : results) {
-        const auto [at, is_new] = first.emplace(r.name, &r);
-        if (is_new || at->second->hash == r.hash) continue;
-        std::fprintf(stderr, "topple: %s: the result on %s differs from the one on %s\n",
-                     r.name.c_str(), r.backend.c_str(), at->second->backend.c_str());
-        agree = false;
-    }
-    return agree;
-}
-
 std::vector<Result> run_suite(const SuiteOptions& a) {
-    const auto known = case_names();
-    for (const std::string& filter : a.filters) {
-        if (std::none_of(known.begin(), known.end(),
-                         [&](const std::string& name) { return name.find(filter) != name.npos; }))
-            throw Error(ErrorKind::usage,
-                        "--filter " + filter + ": no case's name contains it; --list has all");
-    }
-    const bool all = a.backends.empty() || a.backends.front() == "all";
-    const std::vector<std::string> names =
-        all ? std::vector<std::string>{"native", "opencl", "vulkan"} : a.backends;
+    check_filters(a.filters, case_names());
     std::vector<Result> results;
     Stages stages(a);
-    for (const std::string& name : names) {
-        std::shared_ptr<device::Device> device;
-        try {
-            device = device::open_device(name, a.threads);
-        } catch (const Error& error) {
-            if (!all) throw;
-            std::printf("%s: skipped: %s\n", name.c_str(), error.what());
-            continue;
-        }
+    each_backend(a.backends, a.threads, [&](const std::shared_ptr<device::Device>& device) {
         const auto one = measure_backend(device, a, stages);
         results.insert(results.end(), one.begin(), one.end());
-    }
+    });
     return results;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "perf/measure.h"
+#include "perf/kernels/kernel_suite.h"
 #include "perf/pipeline_case.h"
 
 // All that is measured: every kernel, the stages and the whole parse, on every backend.
@@ -26,8 +26,5 @@ std::vector<std::string> case_names();
 // Measures and prints, backend by backend. Throws Error: usage (a filter that no case's name
 // contains, an unknown backend), device (a backend that was named and can't be used).
 std::vector<Result> run_suite(const SuiteOptions& options);
-
-// Every backend must have computed the same: says on stderr where not.
-bool hashes_agree(const std::vector<Result>& results);
 
 }  // namespace topple::perf

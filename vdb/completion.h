@@ -12,7 +12,7 @@
 #include "core/role.h"
 #include "core/solid_cells.h"
 #include "core/space_map.h"
-#include "device/device.h"
+#include "topple/kernels/device.h"
 #include "vdb/voxel_scene.h"
 
 // From what was seen to what is solid. Each rule looks at the volume and proposes a list of voxels;

@@ -6,11 +6,11 @@
 #include <string>
 
 #include "core/short_number.h"
-#include "device/buffer.h"
-#include "device/queue.h"
 #include "six_fill_sweep.hpp"
 #include "six_fill_vote.hpp"
 #include "topple/error.h"
+#include "topple/kernels/buffer.h"
+#include "topple/kernels/queue.h"
 #include "vdb/completion.h"
 #include "vdb/fill_leaves.h"
 #include "vdb/grids.h"

@@ -13,8 +13,8 @@
 #include "core/rotation.h"
 #include "core/solid_cells.h"
 #include "core/space_map.h"
-#include "device/device.h"
 #include "topple/cloud_view.h"
+#include "topple/kernels/device.h"
 #include "topple/scene.h"
 
 // Sparse voxel grids of a scene. OpenVDB holds them; devices see their leaves as flat tiles.

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "device/adopted_buffer.h"
-#include "device/buffer.h"
+#include "topple/kernels/buffer.h"
 #include "topple/stages.h"
 
 namespace topple::stages {

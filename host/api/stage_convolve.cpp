@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "api/arrays.h"
-#include "device/queue.h"
 #include "disturbance.hpp"
+#include "topple/kernels/queue.h"
 
 namespace topple::stages {
 namespace {

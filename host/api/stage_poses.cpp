@@ -6,11 +6,11 @@
 
 #include "api/arrays.h"
 #include "core/room_measures.h"
-#include "device/queue.h"
 #include "io/text.h"
 #include "physics/assess.h"
 #include "physics/tipping.h"
 #include "support_function.hpp"
+#include "topple/kernels/queue.h"
 
 namespace topple::stages {
 namespace {

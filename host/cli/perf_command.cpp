@@ -8,8 +8,8 @@
 #include "cli/commands.h"
 #include "cli/print.h"
 #include "io/replace_file.h"
+#include "perf/kernels/report.h"
 #include "perf/profile.h"
-#include "perf/report.h"
 #include "perf/suite.h"
 #include "topple/device.h"
 #include "topple/error.h"
@@ -46,8 +46,8 @@ int run(const PerfArguments& a) {
                            "is no result of topple perf; choose another name");
     }
     const auto results = perf::run_suite(a.suite);
-    if (!a.json.empty()) perf::write_json(a.json, results);
-    if (!a.csv.empty()) perf::write_csv(a.csv, results);
+    if (!a.json.empty()) io::replace_file(a.json, perf::json_text(results));
+    if (!a.csv.empty()) io::replace_file(a.csv, perf::csv_text(results));
     return perf::hashes_agree(results) ? 0 : 1;
 }
 

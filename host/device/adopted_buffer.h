@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "device/device.h"
+#include "topple/kernels/device.h"
 
 namespace topple::device {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/thread_pool.h"
-#include "device/device.h"
 #include "topple/error.h"
+#include "topple/kernels/device.h"
 #include "topple/parse.h"
 
 namespace topple {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "device/device.h"
+#include "topple/kernels/device.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "core/thread_pool.h"
-#include "device/queue.h"
 #include "topple/error.h"
+#include "topple/kernels/queue.h"
 
 namespace topple::device {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
+#include "topple/kernels/device.h"
 
 // Finding and opening the devices of one backend; topple/device.h does so for all.
 namespace topple::device {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
 #include "geometry/surfels.h"
+#include "topple/kernels/device.h"
 
 namespace topple::geometry {
 

@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "core/ranked.h"
-#include "device/queue.h"
 #include "geometry/manhattan.h"
 #include "normal_cluster.hpp"
+#include "topple/kernels/queue.h"
 
 namespace topple::geometry {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "core/sorted_order.h"
-#include "device/queue.h"
 #include "plane_mean.hpp"
 #include "topple/error.h"
+#include "topple/kernels/queue.h"
 #include "voxel_normals.hpp"
 
 namespace topple::geometry {

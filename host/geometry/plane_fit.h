@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "device/device.h"
 #include "geometry/cell_grid.h"
+#include "topple/kernels/device.h"
 
 namespace topple::geometry {
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/thread_pool.h"
-#include "device/device.h"
 #include "geometry/cell_grid.h"
 #include "geometry/plane_fit.h"
 #include "geometry/surfels.h"
 #include "topple/cloud_view.h"
+#include "topple/kernels/device.h"
 
 // The steps of make_surfels(), in their order.
 namespace topple::geometry {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "device/device.h"
 #include "topple/cloud_view.h"
+#include "topple/kernels/device.h"
 
 namespace topple::geometry {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/table.h"
-#include "device/device.h"
 #include "physics/bodies.h"
+#include "topple/kernels/device.h"
 
 // What touches what, and what rests on what (paper, 4.2). Grid frame: metres, z up.
 namespace topple::graph {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "device/queue.h"
 #include "group_stance.hpp"
+#include "topple/kernels/queue.h"
 
 namespace topple::graph {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/table.h"
-#include "device/buffer.h"
 #include "graph/contact_graph.h"
 #include "graph/stamped_set.h"
 #include "graph/swendsen_wang.h"
+#include "topple/kernels/buffer.h"
 
 namespace topple::graph {
 

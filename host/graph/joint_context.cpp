@@ -13,10 +13,10 @@
 
 #include "dense_layer.hpp"
 #include "device/devices.h"
-#include "device/queue.h"
 #include "fitted/network.h"
 #include "neighbour_pool.hpp"
 #include "topple/error.h"
+#include "topple/kernels/queue.h"
 
 namespace topple::graph {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/table.h"
-#include "device/device.h"
 #include "geometry/primitive_shapes.h"
 #include "graph/joint_features.h"
+#include "topple/kernels/device.h"
 
 namespace topple::graph {
 

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "core/table.h"
-#include "device/device.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
 #include "geometry/surface_seams.h"
 #include "graph/contact_graph.h"
 #include "physics/bodies.h"
+#include "topple/kernels/device.h"
 
 namespace topple::graph {
 

@@ -8,7 +8,6 @@
 
 #include "core/object_of.h"
 #include "core/table.h"
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "graph/contact_graph.h"
 #include "graph/pieces.h"
@@ -27,6 +26,7 @@
 #include "physics/sliding.h"
 #include "physics/toppling.h"
 #include "solids/solid_parts.h"
+#include "topple/kernels/device.h"
 
 // Sections 3 and 4 of the paper: from solid primitives to stable objects. Grid frame.
 namespace topple {

@@ -9,8 +9,8 @@
 #include "core/boundary_cells.h"
 #include "core/scan_gaps.h"
 #include "core/solid_cells.h"
-#include "device/device.h"
 #include "topple/input.h"
+#include "topple/kernels/device.h"
 
 // Everything in this folder works in the grid frame of SolidCells.
 namespace topple::physics {

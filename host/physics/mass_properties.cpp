@@ -5,11 +5,11 @@
 #include <string>
 
 #include "core/short_number.h"
-#include "device/queue.h"
 #include "physics/bodies.h"
 #include "segmented_sum.hpp"
 #include "solids/solid_places.h"
 #include "topple/error.h"
+#include "topple/kernels/queue.h"
 
 namespace topple::physics {
 namespace {

@@ -5,9 +5,9 @@
 #include <unordered_map>
 
 #include "core/thread_pool.h"
-#include "device/device.h"
 #include "physics/bodies.h"
 #include "topple/error.h"
+#include "topple/kernels/device.h"
 
 namespace topple::physics {
 namespace {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "device/cancelling.h"
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "io/text.h"
 #include "objects/found_parts.h"
@@ -19,6 +18,7 @@
 #include "safety/disturbances.h"
 #include "scale/parts_cache.h"
 #include "scale/tiled_parse.h"
+#include "topple/kernels/device.h"
 #include "topple/parse.h"
 
 namespace topple {

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "objects/found_parts.h"
 #include "points/observation.h"
+#include "topple/kernels/device.h"
 #include "topple/parse.h"
 
 // The two halves of a parse in one piece. source: the input, as messages and the result name it.

@@ -4,10 +4,10 @@
 #include <functional>
 #include <optional>
 
-#include "device/device.h"
 #include "geometry/surfels.h"
 #include "points/observation.h"
 #include "points/single_scan.h"
+#include "topple/kernels/device.h"
 
 namespace topple {
 

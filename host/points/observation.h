@@ -10,12 +10,12 @@
 
 #include "core/space_map.h"
 #include "core/thread_pool.h"
-#include "device/device.h"
 #include "geometry/manhattan.h"
 #include "geometry/storeys.h"
 #include "points/frame_stream.h"
 #include "points/scale_checks.h"
 #include "topple/cloud_view.h"
+#include "topple/kernels/device.h"
 #include "topple/parse.h"
 
 namespace topple {

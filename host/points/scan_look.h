@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "device/device.h"
 #include "geometry/manhattan.h"
 #include "topple/cloud_view.h"
 #include "topple/input.h"
+#include "topple/kernels/device.h"
 
 // A quick look at a scan: what of it decides how much work its parse has. A twentieth of a second
 // for a room.

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
 #include "physics/bodies.h"
 #include "physics/directions.h"
 #include "physics/toppling.h"
 #include "safety/fall_zone.h"
 #include "topple/input.h"
+#include "topple/kernels/device.h"
 #include "topple/motion.h"
 #include "topple/scene.h"
 

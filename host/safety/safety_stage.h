@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "objects/object_stage.h"
 #include "safety/advise.h"
 #include "safety/fields.h"
 #include "safety/landing.h"
 #include "safety/unsafety_category.h"
+#include "topple/kernels/device.h"
 
 // Section 5 of the paper: what may disturb the objects, and what that risks. Grid frame.
 namespace topple {

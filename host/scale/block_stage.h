@@ -8,11 +8,11 @@
 
 #include "core/role.h"
 #include "core/solid_cells.h"
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "geometry/surface_samples.h"
 #include "geometry/surface_seams.h"
 #include "scale/blocks.h"
+#include "topple/kernels/device.h"
 
 // Section 2 of the paper for one block of a cloud that is larger than memory.
 namespace topple {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "device/device.h"
 #include "topple/crew.h"
+#include "topple/kernels/device.h"
 
 // Stages whose tasks a crew shares out.
 namespace topple {

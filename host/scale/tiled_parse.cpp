@@ -11,7 +11,6 @@
 
 #include "core/ranked.h"
 #include "device/cancelling.h"
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "geometry/surfels.h"
 #include "io/text.h"
@@ -35,6 +34,7 @@
 #include "scale/work_files.h"
 #include "scale/work_folder.h"
 #include "solids/solid_parts.h"
+#include "topple/kernels/device.h"
 
 namespace topple {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "scale/blocks.h"
 #include "scale/point_spill.h"
 #include "topple/crew.h"
+#include "topple/kernels/device.h"
 #include "topple/parse.h"
 
 // The two stages of a parse in blocks that a crew shares out: thinning of bins, and section 2 of

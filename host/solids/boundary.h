@@ -8,9 +8,9 @@
 #include "core/ledge.h"
 #include "core/solid_cells.h"
 #include "core/thread_pool.h"
-#include "device/device.h"
 #include "solids/coherence.h"
 #include "solids/patches.h"
+#include "topple/kernels/device.h"
 
 namespace topple::solids {
 

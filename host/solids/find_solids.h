@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "points/observation.h"
 #include "solids/surfaces.h"
 #include "solids/volume.h"
+#include "topple/kernels/device.h"
 #include "topple/parse.h"
 
 // Section 2 of the paper: from points to primitives and their solids.

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "cell_share.hpp"
-#include "device/queue.h"
 #include "solids/boundary.h"
+#include "topple/kernels/queue.h"
 
 namespace topple::solids {
 

@@ -8,10 +8,10 @@
 #include <span>
 #include <stop_token>
 
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "geometry/surface_gaps.h"
 #include "points/observation.h"
+#include "topple/kernels/device.h"
 #include "vdb/voxel_scene.h"
 
 // Visibility carving (paper, 2.2.2): what depth frames say about the voxels.

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "geometry/framed_surfels.h"
 #include "geometry/manhattan.h"
@@ -16,6 +15,7 @@
 #include "geometry/surface_seams.h"
 #include "geometry/surfels.h"
 #include "points/observation.h"
+#include "topple/kernels/device.h"
 
 // Section 2.1 of the paper: from points to primitives.
 namespace topple {

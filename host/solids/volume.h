@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "core/solid_scene.h"
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "geometry/surface_samples.h"
 #include "points/observation.h"
 #include "solids/space_carving.h"
 #include "solids/surfaces.h"
 #include "solids/taken_away.h"
+#include "topple/kernels/device.h"
 #include "vdb/voxel_scene.h"
 
 // Section 2.2 of the paper: from labelled points to solid voxels.

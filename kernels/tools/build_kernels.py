@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Builds one kernel source into the forms that the three backends run.
 
-  build_kernels.py KERNEL_FILE OUT_DIR --glslang PATH
+  build_kernels.py OUT_DIR --params FILE --namespace NAME --root DIR [--kernel FILE [--functions FILE] --glslang PATH]
 
-Writes into OUT_DIR, for kernels/<name>.kernel:
+Writes into OUT_DIR, for <name>.kernel:
   <name>.hpp         the kernel's typed description: Args (one member per binding), Params, source()
   <name>.source.cpp  its KernelSource: SPIR-V words, OpenCL text, native entries
   <name>.native.cpp  the C++ form, compiled once per instruction set
+and without --kernel:
+  params.hpp         the parameters of all kernels, as the host sees them
 
+FILEs are named in errors and by compilers as they lie below DIR. What is C++ stands in the namespace NAME.
 The declarations in the source (KERNEL, BUFFER_*, PARAMS, SHARED, ITEMS_PER_LANE) are the only
 binding list there is: all forms and the host's types come from it.
 """
@@ -29,7 +32,7 @@ REFUSED = [
     (r'(?<![\w.])(?:\d+\.\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])|(?<![\w.])\d+[eE][-+]?\d+(?![\w.])',
      'is a double in C++ and OpenCL C; write the f behind it'),
     (r'\b(?:sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|exp10|log|log2|log10|pow|rsqrt|inversesqrt|'
-     r'cbrt|hypot|erf)\s*\(', 'differs between backends; use a polynomial in kernels/math.h'),
+     r'cbrt|hypot|erf)\s*\(', 'differs between backends; use a polynomial'),
     (r'\b(?:dot|length|distance|normalize|cross|mix|smoothstep|fma|mad|fmod|mod|fract|round|rint|roundEven)\s*\(',
      'rounds differently between backends; spell it out with + - * /'),
     (r'\b(?:double|half|long|short|char|size_t|u?int64_t|float[234]|u?int[234]|[iu]?vec[234])\b',
@@ -38,8 +41,21 @@ REFUSED = [
 ]
 
 
-def fail(path, message):
-    sys.exit(f'{path}: {message}')
+def fail(name, message):
+    sys.exit(f'{name}: {message}')
+
+
+class Source:
+    """A file that is part of what compilers get: its text, and the name that they know it by."""
+
+    def __init__(self, path, root):
+        with open(path, encoding='utf-8') as f:
+            self.text = f.read()
+        below = os.path.relpath(os.path.abspath(path), root)
+        self.name = os.path.abspath(path) if below.startswith(os.pardir + os.sep) else below
+
+    def quoted(self):
+        return f'#line 1 "{self.name}"\n{self.text}'
 
 
 def check_dialect(name, text):
@@ -60,13 +76,14 @@ def check_dialect(name, text):
 class Kernel:
     """The declarations of one kernel file."""
 
-    def __init__(self, path):
-        self.path = path
-        with open(path, encoding='utf-8') as f:
-            self.text = f.read()
-        code = re.sub(r'//[^\n]*', '', self.text)
+    def __init__(self, source):
+        self.source = source
+        path = source.name
+        code = re.sub(r'//[^\n]*', '', source.text)
         self.name = os.path.basename(path).rsplit('.', 1)[0]
-        check_dialect(f'kernels/{self.name}.kernel', self.text)
+        if self.name == 'params':
+            fail(path, 'params.hpp is the header of the parameters; call the kernel otherwise')
+        check_dialect(path, source.text)
         head = re.findall(r'\bKERNEL\(\s*(\w+)\s*,\s*(\d+)\s*\)', code)
         if len(head) != 1:
             fail(path, f'expected one KERNEL(name, group_size), found {len(head)}')
@@ -98,21 +115,21 @@ class Kernel:
 
     def body(self, items):
         """The source as a backend's compiler gets it, behind what gives it ITEMS."""
-        return items + f'#define ITEMS_PER_LANE(native, opencl, vulkan, gpu)\n#line 1 "kernels/{self.name}.kernel"\n' + self.text
+        return items + '#define ITEMS_PER_LANE(native, opencl, vulkan, gpu)\n' + self.source.quoted()
 
 
-def params_fields(params_h, kind):
+def params_fields(params, kind):
     """Fields of one parameter struct, as (type, name)."""
-    code = re.sub(r'//[^\n]*', '', params_h)
+    code = re.sub(r'//[^\n]*', '', params.text)
     found = re.search(r'STRUCT\(%s\)\s*\{(.*?)\}' % kind, code, re.S)
     if not found:
-        sys.exit(f'kernels/params.h: no STRUCT({kind})')
+        fail(params.name, f'no STRUCT({kind})')
     fields = re.findall(r'(\w+)\s+(\w+)\s*;', found.group(1))
     for t, n in fields:
         if t not in SIZES:
-            sys.exit(f'kernels/params.h: {kind}.{n} has type {t}; parameters are {", ".join(SIZES)}')
+            fail(params.name, f'{kind}.{n} has type {t}; parameters are {", ".join(SIZES)}')
     if 4 * len(fields) > 128:
-        sys.exit(f'kernels/params.h: {kind} has {4 * len(fields)} bytes, more than the 128 of a push constant')
+        fail(params.name, f'{kind} has {4 * len(fields)} bytes, more than the 128 of a push constant')
     return fields
 
 
@@ -156,7 +173,7 @@ def call_divide(words):
         out += instruction
         at += length
     if divide is None:
-        sys.exit('kernels/dialect/glsl/prelude.glsl: no topple_divide')
+        fail('dialect/glsl/prelude.glsl', 'no topple_divide')
     return out
 
 
@@ -171,7 +188,7 @@ def spirv(kernel, shared_text, glslang, out_dir):
                           source],
                          capture_output=True, text=True)
     if run.returncode:
-        sys.exit(f'glslang refuses {kernel.path}:\n{run.stdout}{run.stderr}')
+        sys.exit(f'glslang refuses {kernel.source.name}:\n{run.stdout}{run.stderr}')
     with open(binary, 'rb') as f:
         data = f.read()
     words = add_no_contraction(call_divide(list(struct.unpack('<%dI' % (len(data) // 4), data))))
@@ -180,22 +197,42 @@ def spirv(kernel, shared_text, glslang, out_dir):
     return words
 
 
-def header(kernel, fields):
+def params_header(params, namespace):
+    return f'''// Generated from {params.name}.
+#pragma once
+
+#include <cstdint>
+
+namespace {namespace} {{
+
+using uint = std::uint32_t;
+
+#define STRUCT(T) struct T
+#define STRUCT_END(T) ;
+{params.quoted()}
+#undef STRUCT
+#undef STRUCT_END
+
+}}  // namespace {namespace}
+'''
+
+
+def header(kernel, fields, namespace):
     camel = ''.join(w.capitalize() for w in kernel.name.split('_'))
-    args = '\n'.join(f'        device::Argument<{HOST_TYPES[t]}> {n};' for _, t, n in kernel.bindings)
+    args = '\n'.join(f'        ::topple::device::Argument<{HOST_TYPES[t]}> {n};' for _, t, n in kernel.bindings)
     binds = '\n'.join(f'        ranges.push_back(args.{n}.range);' for _, _, n in kernel.bindings)
     asserts = '\n'.join(f'static_assert(offsetof({kernel.params_type}, {n}) == {4 * i});'
                         for i, (_, n) in enumerate(fields))
-    return f'''// Generated from kernels/{kernel.name}.kernel.
+    return f'''// Generated from {kernel.source.name}.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "device/buffer.h"
 #include "params.hpp"
+#include "topple/kernels/buffer.h"
 
-namespace topple::kernels {{
+namespace {namespace} {{
 
 {asserts}
 static_assert(sizeof({kernel.params_type}) == {4 * len(fields)});
@@ -205,17 +242,17 @@ struct {camel} {{
     struct Args {{
 {args}
     }};
-    static void bind(const Args& args, std::vector<device::BoundRange>& ranges) {{
+    static void bind(const Args& args, std::vector<::topple::device::BoundRange>& ranges) {{
 {binds}
     }}
-    static const device::KernelSource& source();
+    static const ::topple::device::KernelSource& source();
 }};
 
-}}  // namespace topple::kernels
+}}  // namespace {namespace}
 '''
 
 
-def native(kernel):
+def native(kernel, common, namespace):
     """The C++ form, with the bindings spelled out for the prelude's macros."""
     const = {'IN': 'const ', 'OUT': '', 'INOUT': ''}
     load = ' '.join(f'auto* __restrict {n} = static_cast<{const[a]}{t}*>(args_.buffers[{i}]); (void){n};'
@@ -226,9 +263,10 @@ def native(kernel):
     parameters += f'const {kernel.params_type} {kernel.params_name},'
     arguments = ''.join(f'{n}, ' for _, _, n in kernel.bindings) + f'{kernel.params_name},'
     shared = ' '.join(f'alignas(64) {t} {n}[{c}];' for t, n, c in kernel.shared)
-    return f'''// Generated from kernels/{kernel.name}.kernel.
+    return f'''// Generated from {kernel.source.name}.
+#define DIALECT_NAMESPACE {namespace}
 #include "dialect/native/prelude.h"
-#define RUN_NAME {kernel.name}_TOPPLE_ISA
+#define RUN_NAME TOPPLE_RUN_NAME
 #define LOAD_BINDINGS {load}
 #define BINDING_PARAMETERS {parameters}
 #define BINDING_ARGUMENTS {arguments}
@@ -237,36 +275,38 @@ def native(kernel):
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #pragma GCC diagnostic ignored "-Wunused-variable"
 #pragma GCC diagnostic ignored "-Wunknown-pragmas"
-namespace topple::kernels {{
-#include "params.h"
-#include "math.h"
+#pragma GCC diagnostic ignored "-Wmissing-declarations"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+namespace {namespace} {{
+{common}
 {kernel.body(f"#define ITEMS {kernel.items['native']}" + chr(10))}
-}}  // namespace topple::kernels
-'''.replace(f'{kernel.name}_TOPPLE_ISA', 'TOPPLE_RUN_NAME')
+}}  // namespace {namespace}
+'''
 
 
-def source_cpp(kernel, words, opencl_text):
+def source_cpp(kernel, words, opencl_text, namespace):
     camel = ''.join(w.capitalize() for w in kernel.name.split('_'))
-    bindings = ',\n    '.join(f'{{"{n}", device::Access::{ACCESS[a]}, {SIZES[t]}}}'
+    bindings = ',\n    '.join(f'{{"{n}", ::topple::device::Access::{ACCESS[a]}, {SIZES[t]}}}'
                               for a, t, n in kernel.bindings)
     spv = ',\n    '.join(', '.join(f'0x{w:08x}' for w in words[i:i + 8]) for i in range(0, len(words), 8))
     # Long literals in pieces: compilers only promise 65,536 characters for one.
     pieces = '\n    '.join('R"CL(' + opencl_text[i:i + 8000] + ')CL"' for i in range(0, len(opencl_text), 8000))
     scope = f'{kernel.name}_scope'
-    return f'''// Generated from kernels/{kernel.name}.kernel.
+    return f'''// Generated from {kernel.source.name}.
 #include "{kernel.name}.hpp"
 
-namespace topple::kernels {{
+namespace {namespace} {{
 namespace {scope} {{
-void run_baseline(const device::NativeArgs&, std::uint32_t, std::uint32_t);
+void run_baseline(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);
 #ifdef TOPPLE_NATIVE_ISAS
-void run_avx2(const device::NativeArgs&, std::uint32_t, std::uint32_t);
-void run_avx512(const device::NativeArgs&, std::uint32_t, std::uint32_t);
+void run_avx2(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);
+void run_avx512(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);
 #endif
 }}  // namespace {scope}
 namespace {{
 
-constexpr device::Binding bindings[] = {{
+constexpr ::topple::device::Binding bindings[] = {{
     {bindings}}};
 constexpr std::uint32_t spirv[] = {{
     {spv}}};
@@ -275,8 +315,8 @@ constexpr const char* opencl =
 
 }}  // namespace
 
-const device::KernelSource& {camel}::source() {{
-    static const device::KernelSource source{{
+const ::topple::device::KernelSource& {camel}::source() {{
+    static const ::topple::device::KernelSource source{{
         "{kernel.name}", {kernel.group},
         {kernel.items['native']}, {kernel.items['opencl']}, {kernel.items['vulkan']}, {kernel.items['gpu']},
         {str(kernel.per_group).lower()}, sizeof(Params), bindings, spirv, opencl,
@@ -289,7 +329,7 @@ const device::KernelSource& {camel}::source() {{
     return source;
 }}
 
-}}  // namespace topple::kernels
+}}  // namespace {namespace}
 '''
 
 
@@ -300,28 +340,38 @@ def write(path, text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('kernel')
     parser.add_argument('out')
-    parser.add_argument('--glslang', required=True)
+    for name in ('params', 'namespace', 'root'):
+        parser.add_argument('--' + name, required=True)
+    for name in ('kernel', 'functions', 'glslang'):
+        parser.add_argument('--' + name)
     options = parser.parse_args()
-    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    dialect = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'dialect')
 
-    def text(*path):
-        with open(os.path.join(root, *path), encoding='utf-8') as f:
+    def prelude(*path):
+        with open(os.path.join(dialect, *path), encoding='utf-8') as f:
             return f.read()
 
     os.makedirs(options.out, exist_ok=True)
-    check_dialect('kernels/math.h', text('math.h'))
-    kernel = Kernel(options.kernel)
-    fields = params_fields(text('params.h'), kernel.params_type)
-    common = '#line 1 "kernels/params.h"\n' + text('params.h') + '#line 1 "kernels/math.h"\n' + text('math.h')
-    words = spirv(kernel, text('dialect', 'glsl', 'prelude.glsl') + common, options.glslang, options.out)
+    params = Source(options.params, options.root)
+    if not options.kernel:
+        write(os.path.join(options.out, 'params.hpp'), params_header(params, options.namespace))
+        return
+    common = params.quoted()
+    if options.functions:
+        functions = Source(options.functions, options.root)
+        check_dialect(functions.name, functions.text)
+        common += '\n' + functions.quoted()
+    common += '\n'
+    kernel = Kernel(Source(options.kernel, options.root))
+    fields = params_fields(params, kernel.params_type)
+    words = spirv(kernel, prelude('glsl', 'prelude.glsl') + common, options.glslang, options.out)
     # The driver is given ITEMS as an option.
-    opencl_text = text('dialect', 'opencl', 'prelude.cl') + common + kernel.body('')
+    opencl_text = prelude('opencl', 'prelude.cl') + common + kernel.body('')
     at = os.path.join(options.out, kernel.name)
-    write(at + '.hpp', header(kernel, fields))
-    write(at + '.native.cpp', native(kernel))
-    write(at + '.source.cpp', source_cpp(kernel, words, opencl_text))
+    write(at + '.hpp', header(kernel, fields, options.namespace))
+    write(at + '.native.cpp', native(kernel, common, options.namespace))
+    write(at + '.source.cpp', source_cpp(kernel, words, opencl_text, options.namespace))
 
 
 if __name__ == '__main__':

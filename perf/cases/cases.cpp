@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "perf/cases/cases.h"
 
+#include "perf/kernels/probes.h"
+
 namespace topple::perf {
 
 std::span<const Case> all_cases() {
     static constexpr Case cases[] = {
-        {"triad", triad},
-        {"multiply_add", multiply_add},
-        {"divide", divide},
-        {"gather", gather},
+        probes[0],
+        probes[1],
+        probes[2],
+        probes[3],
         {"voxel_normals", voxel_normals},
         {"plane_mean", plane_mean},
         {"normal_cluster", normal_cluster},

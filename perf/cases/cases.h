@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "perf/case.h"
+#include <span>
+
+#include "topple/kernel_testing/case.h"
 
 namespace topple::perf {
 
+// In the order in which data passes the kernels; the four probes first.
+std::span<const Case> all_cases();
+
 // One for each kernel, in the file of its name or of its group.
-Prepared triad(device::Device& device);
-Prepared multiply_add(device::Device& device);
-Prepared divide(device::Device& device);
-Prepared gather(device::Device& device);
 Prepared voxel_normals(device::Device& device);
 Prepared plane_mean(device::Device& device);
 Prepared normal_cluster(device::Device& device);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 
 namespace topple::perf {
 

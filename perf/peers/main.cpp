@@ -3,10 +3,11 @@
 #include <cstdio>
 #include <string>
 
+#include "io/replace_file.h"
+#include "perf/kernels/report.h"
 #include "perf/landscape_stages.h"
 #include "perf/peers/landscape_peers.h"
 #include "perf/peers/peers.h"
-#include "perf/report.h"
 #include "topple/device.h"
 
 // Other libraries on the same data as topple's stages, beside them.
@@ -32,7 +33,7 @@ int main(int argc, char** argv) {
         for (const auto& peer : perf::compare_with_peers(scene, own)) results.push_back(peer);
         for (const auto compare : {perf::compare_with_trimesh, perf::compare_with_bullet})
             if (const auto peer = compare(results)) results.push_back(*peer);
-        if (!csv.empty()) perf::write_csv(csv, results);
+        if (!csv.empty()) io::replace_file(csv, perf::csv_text(results));
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "topple_peers: %s\n", error.what());

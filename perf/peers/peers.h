@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 #include "perf/stage_cases.h"
 
 // The Point Cloud Library and OctoMap on the same data as the stages.

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "device/device.h"
 #include "device/stage_clock.h"
 #include "fitted/boosted_trees.h"
 #include "geometry/primitive_shapes.h"
@@ -27,6 +26,7 @@
 #include "solids/find_solids.h"
 #include "solids/solid_parts.h"
 #include "topple/error.h"
+#include "topple/kernels/device.h"
 
 namespace {
 

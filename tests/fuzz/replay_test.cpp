@@ -2,7 +2,8 @@
 #include "fuzz/readers.h"
 #include "host/io/files.h"
 #include "lab/temporary_folder.h"
-#include "random.h"
+#include "testing.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::fuzz {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "device_compare.h"
-#include "device_harness.h"
+#include "device/devices.h"
 #include "divide.hpp"
+#include "errors.h"
 #include "gather.hpp"
 #include "multiply_add.hpp"
 #include "normal_cluster.hpp"
@@ -9,6 +9,8 @@
 #include "oracle/normal_cluster_oracle.h"
 #include "oracle/segmented_sum_oracle.h"
 #include "segmented_sum.hpp"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 #include "triad.hpp"
 
 // The kernels that measure a device: its arithmetic and its memory.

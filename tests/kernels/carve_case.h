@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "device/buffer.h"
 #include "oracle/carve_oracle.h"
 #include "oracle/random_depth.h"
 #include "params.hpp"
+#include "topple/kernels/buffer.h"
 #include "vdb/depth_pyramid.h"
 
 // Leaves around the origin and frames that look at them, for the tests of both carving kernels.

@@ -6,12 +6,12 @@
 #include "carve_leaves.hpp"
 #include "cell_share.hpp"
 #include "core/boundary_cells.h"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "device/devices.h"
+#include "errors.h"
 #include "kernels/carve_case.h"
-#include "kernels/device_compare.h"
-#include "kernels/device_harness.h"
 #include "oracle/cell_share_oracle.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::test {
 namespace {

@@ -6,10 +6,11 @@
 #include <thread>
 
 #include "device/adopted_buffer.h"
-#include "device/queue.h"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "errors.h"
 #include "topple/embed.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
+#include "topple/kernels/queue.h"
 #include "triad.hpp"
 
 // Running on handles that the caller made, keeps and destroys.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <unistd.h>
 
-#include "device/queue.h"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "errors.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
+#include "topple/kernels/queue.h"
 #include "triad.hpp"
 
 namespace topple::test {
@@ -194,10 +195,12 @@ std::string verdict(const std::string& statement) {
                                                "    PARAMS(TriadParams, p)\n"
                                                "BEGIN\n"
                                             << statement << "\nEND\n";
-    const std::string command = std::string("python3 '") + TOPPLE_SOURCE_DIR +
-                                "/kernels/tools/build_kernels.py' '" +
-                                (folder / "sample.kernel").string() + "' '" + folder.string() +
-                                "' --glslang glslangValidator 2>&1";
+    const std::string kernels = TOPPLE_SOURCE_DIR "/kernels";
+    const std::string command = "python3 '" + kernels + "/tools/build_kernels.py' '" +
+                                folder.string() + "' --kernel '" +
+                                (folder / "sample.kernel").string() + "' --params '" + kernels +
+                                "/probes/params.h' --root '" + folder.string() +
+                                "' --namespace sample --glslang glslangValidator 2>&1";
     std::string said;
     FILE* pipe = popen(command.c_str(), "r");
     if (!pipe) return "popen failed";
@@ -216,13 +219,13 @@ TEST(DeviceTools, TakesWhatTheDialectHas) {
 
 TEST(DeviceTools, RefusesByFileAndLine) {
     const std::array<std::array<std::string, 2>, 7> cases{{
-        {"o[0] = 0.5;", "kernels/sample.kernel:6: 0.5 is a double"},
-        {"o[0] = 1e-3;", "kernels/sample.kernel:6: 1e-3 is a double"},
-        {"o[0] = exp(1.0f);", "kernels/sample.kernel:6: exp( differs between backends"},
-        {"o[0] = fma(o[0], o[1], o[2]);", "kernels/sample.kernel:6: fma( rounds differently"},
-        {"double d = 1.0f;", "kernels/sample.kernel:6: double is not a type"},
-        {"o[0] = p.scal;", "kernels/sample.kernel:6: 'scal' : no such field"},
-        {"o[0] = nowhere;", "kernels/sample.kernel:6: 'nowhere' : undeclared identifier"},
+        {"o[0] = 0.5;", "sample.kernel:6: 0.5 is a double"},
+        {"o[0] = 1e-3;", "sample.kernel:6: 1e-3 is a double"},
+        {"o[0] = exp(1.0f);", "sample.kernel:6: exp( differs between backends"},
+        {"o[0] = fma(o[0], o[1], o[2]);", "sample.kernel:6: fma( rounds differently"},
+        {"double d = 1.0f;", "sample.kernel:6: double is not a type"},
+        {"o[0] = p.scal;", "sample.kernel:6: 'scal' : no such field"},
+        {"o[0] = nowhere;", "sample.kernel:6: 'nowhere' : undeclared identifier"},
     }};
     for (const auto& [statement, expected] : cases) {
         const std::string said = verdict(statement);

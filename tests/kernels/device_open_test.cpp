@@ -2,11 +2,13 @@
 #include <thread>
 
 #include "barrier_probe.hpp"
-#include "device/queue.h"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "device/vulkan/vulkan_device.h"
 #include "dialect_probe.hpp"
+#include "errors.h"
 #include "support_function.hpp"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
+#include "topple/kernels/queue.h"
 #include "triad.hpp"
 
 namespace topple::test {
@@ -87,7 +89,7 @@ TEST_P(DeviceOpenEach, IsAmongTheListed) {
 
 // Two devices of one backend live side by side.
 TEST_P(DeviceOpenEach, OpensTwice) {
-    const auto other = open(GetParam());
+    const auto other = device::open_form(GetParam());
     device::Buffer<float> a(*device, std::vector<float>{1, 2}, "a"),
         b(*other, std::vector<float>{3, 4}, "b");
     EXPECT_EQ(a.download(), (std::vector<float>{1, 2}));

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "barrier_probe.hpp"
-#include "device/queue.h"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "device/devices.h"
+#include "errors.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
+#include "topple/kernels/queue.h"
 #include "triad.hpp"
 
 namespace topple::test {

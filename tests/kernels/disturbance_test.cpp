@@ -2,10 +2,12 @@
 #include "disturbance.hpp"
 
 #include "core/random.h"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "device/devices.h"
 #include "disturbance_reach.hpp"
+#include "errors.h"
 #include "oracle/disturbance_oracle.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple {
 namespace {

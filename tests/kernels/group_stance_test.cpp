@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "group_stance.hpp"
 
-#include "device_compare.h"
-#include "device_harness.h"
+#include "errors.h"
 #include "oracle/group_stance_oracle.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::test {
 namespace {

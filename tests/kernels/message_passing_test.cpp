@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "dense_layer.hpp"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "errors.h"
 #include "neighbour_pool.hpp"
 #include "oracle/message_passing_oracle.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 // The kernels of a network that passes messages along the edges of a graph.
 namespace topple::test {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "rocking.hpp"
 
-#include "device_compare.h"
-#include "device_harness.h"
+#include "device/devices.h"
+#include "errors.h"
 #include "oracle/rocking_oracle.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::test {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "six_fill_sweep.hpp"
 
-#include "kernels/device_compare.h"
-#include "kernels/device_harness.h"
+#include "errors.h"
 #include "oracle/six_fill_oracle.h"
 #include "six_fill_vote.hpp"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::test {
 namespace {

@@ -2,11 +2,13 @@
 #include "voxel_normals.hpp"
 
 #include "columns_by_trial.h"
-#include "device_compare.h"
-#include "device_harness.h"
+#include "device/devices.h"
+#include "errors.h"
 #include "oracle/plane_mean_oracle.h"
 #include "oracle/voxel_normals_oracle.h"
 #include "plane_mean.hpp"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::test {
 namespace {

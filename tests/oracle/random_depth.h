@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "random.h"
+#include "standard.h"
 #include "topple/input.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::oracle {
 

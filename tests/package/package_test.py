@@ -11,6 +11,7 @@ and runs a project against it. Exits with 77 where a test is skipped.
 """
 import argparse
 import collections
+import glob
 import json
 import os
 import re
@@ -110,8 +111,8 @@ class Package:
     def exports(self):
         """What a shared library shows is what the public headers declare, whichever linker makes it."""
         declared = collections.Counter()
-        for name in os.listdir(os.path.join(self.prefix, 'include/topple')):
-            with open(os.path.join(self.prefix, 'include/topple', name), encoding='utf-8') as file:
+        for path in glob.glob(os.path.join(self.prefix, 'include/topple/*.h')):
+            with open(path, encoding='utf-8') as file:
                 text = re.sub(r'//[^\n]*|/\*.*?\*/', '', file.read(), flags=re.S)
             # Functions outside of classes begin at the margin; those with a body are no symbols of the library.
             declared.update(re.findall(r'^(?!inline|typedef|using)[\w:][\w:<>,&* ]*?[ &*](\w+)\((?:[^;{}()]|\([^()]*\)|\{\})*\);', text, re.M))

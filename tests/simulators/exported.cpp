@@ -3,11 +3,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "device/device.h"
 #include "export/writers.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
 #include "lab/temporary_folder.h"
+#include "topple/kernels/device.h"
 #include "topple/parse.h"
 
 namespace topple::exports::test {

@@ -3,10 +3,10 @@
 
 #include "boxes.h"
 #include "core/scan_gaps.h"
-#include "device/device.h"
 #include "device/devices.h"
 #include "errors.h"
 #include "host/solids/cell_column.h"
+#include "topple/kernels/device.h"
 #include "vdb/boxes.h"
 #include "vdb/fill_leaves.h"
 #include "vdb/voxel_scene.h"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/voxel_scene.h"
 
-#include "device/device.h"
-#include "kernels/device_harness.h"
+#include "errors.h"
 #include "oracle/random_depth.h"
 #include "oracle/six_fill_oracle.h"
+#include "topple/kernel_testing/each_backend.h"
+#include "topple/kernels/device.h"
 #include "vdb/boxes.h"
 #include "vdb/completion.h"
 

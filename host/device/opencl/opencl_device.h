@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
+#include "topple/kernels/device.h"
 
 namespace topple::device {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
 #include "device/devices.h"
 #include "device/vulkan/float_controls.h"
+#include "topple/kernels/device.h"
 
 namespace topple::device {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
 #include "device/vulkan/vulkan_context.h"
 #include "device/vulkan/vulkan_handle.h"
+#include "topple/kernels/device.h"
 
 namespace topple::device {
 

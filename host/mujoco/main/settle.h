@@ -6,8 +6,7 @@
 
 #include "mujoco/settled.h"
 
-// MuJoCo itself. Its header is kept out of all others: it includes a "math.h" by that name, which
-// the kernels have, too.
+// MuJoCo itself. Its header is kept out of all others.
 namespace topple::mujoco {
 
 // Runs a scene for so long, or until that took `patience_s`. Does not return where MuJoCo finds

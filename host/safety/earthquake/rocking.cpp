@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "device/queue.h"
 #include "physics/landscape.h"
 #include "rocking.hpp"
+#include "topple/kernels/queue.h"
 
 namespace topple::safety {
 namespace {

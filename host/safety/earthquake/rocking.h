@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "device/device.h"
 #include "topple/input.h"
+#include "topple/kernels/device.h"
 
 // What ground motion does to rigid bodies, seen from the side (kernel rocking). Everything is
 // relative to the ground, which throws a body `ahead` while its acceleration is positive: it moves

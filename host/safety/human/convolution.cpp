@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "device/queue.h"
 #include "disturbance.hpp"
 #include "disturbance_reach.hpp"
 #include "safety/human/human_field.h"
+#include "topple/kernels/queue.h"
 
 namespace topple::safety {
 namespace {

@@ -7,13 +7,13 @@
 #include <tuple>
 #include <vector>
 
-#include "device/buffer.h"
 #include "physics/toppling.h"
 #include "safety/human/footprint.h"
 #include "safety/human/human_field.h"
 #include "safety/human/secondary_motion.h"
 #include "safety/human/walkable_map.h"
 #include "safety/objects.h"
+#include "topple/kernels/buffer.h"
 
 namespace topple::safety {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The kernel dialect as C++20. A kernel becomes one function that runs a range of work-groups on the
-// calling thread; its lanes are a loop that the compiler vectorises. See kernels/README.md.
+// calling thread; its lanes are a loop that the compiler vectorises. See kernels/README.md. All of it stands in
+// the namespace of the kernels, DIALECT_NAMESPACE, where it hides the standard library's functions of these names.
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -8,12 +9,17 @@
 #include <cstring>
 #include <type_traits>
 
-#include "device/kernel.h"
+#include "topple/kernels/kernel.h"
+
+#ifdef __FAST_MATH__
+#error "kernels give the same bits on all backends, so they can't be compiled with -ffast-math"
+#endif
 
 #define TOPPLE_NATIVE 1
 
-namespace topple::kernels {
+namespace DIALECT_NAMESPACE {
 using uint = std::uint32_t;
+using Bound_ = ::topple::device::NativeArgs;
 }
 
 #define STRUCT(T) struct T
@@ -39,7 +45,7 @@ using uint = std::uint32_t;
         (void)global_id_, (void)local_id_, (void)group_id_;
 #define END                                                                                    \
     }                                                                                          \
-    void RUN_NAME(const device::NativeArgs& args_, uint first_group_, uint last_group_) {      \
+    void RUN_NAME(const Bound_& args_, uint first_group_, uint last_group_) {                  \
         LOAD_BINDINGS                                                                          \
         for (uint group_id_ = first_group_; group_id_ < last_group_; ++group_id_) {            \
             EACH_LANE_(local_id_) {                                                            \
@@ -53,7 +59,7 @@ using uint = std::uint32_t;
 // Kernels with barriers: what stands between LANES and END_LANES runs for every lane of the group,
 // then all lanes wait; what stands outside is uniform over the group.
 #define BEGIN_GROUP                                                                            \
-    void RUN_NAME(const device::NativeArgs& args_, uint first_group_, uint last_group_) {      \
+    void RUN_NAME(const Bound_& args_, uint first_group_, uint last_group_) {                  \
         LOAD_BINDINGS                                                                          \
         for (uint group_id_ = first_group_; group_id_ < last_group_; ++group_id_) {            \
             SHARED_ARRAYS
@@ -83,7 +89,7 @@ using uint = std::uint32_t;
 // that choose among two vectors need no gather for that.
 #define NEAR_WORDS (2 * ITEMS)
 #define LOAD_NEAR(to, from, base, place) \
-    ::topple::kernels::load_near_<ITEMS>(to, (from) + (base), place);
+    ::DIALECT_NAMESPACE::load_near_<ITEMS>(to, (from) + (base), place);
 
 #define GLOBAL_ID global_id_
 #define LOCAL_ID local_id_
@@ -93,14 +99,14 @@ using uint = std::uint32_t;
 #define ATOMIC_ADD(lvalue, v) std::atomic_ref(lvalue).fetch_add(v, std::memory_order_relaxed)
 #define ATOMIC_OR(lvalue, v) std::atomic_ref(lvalue).fetch_or(v, std::memory_order_relaxed)
 #define ATOMIC_AND(lvalue, v) std::atomic_ref(lvalue).fetch_and(v, std::memory_order_relaxed)
-#define ATOMIC_MIN(lvalue, v) ::topple::kernels::atomic_min_(lvalue, v)
-#define ATOMIC_MAX(lvalue, v) ::topple::kernels::atomic_max_(lvalue, v)
-#define SHARED_ADD(lvalue, v) ::topple::kernels::shared_add_(lvalue, v)
-#define SHARED_OR(lvalue, v) ::topple::kernels::shared_or_(lvalue, v)
-#define SHARED_MIN(lvalue, v) ::topple::kernels::shared_min_(lvalue, v)
-#define SHARED_MAX(lvalue, v) ::topple::kernels::shared_max_(lvalue, v)
+#define ATOMIC_MIN(lvalue, v) ::DIALECT_NAMESPACE::atomic_min_(lvalue, v)
+#define ATOMIC_MAX(lvalue, v) ::DIALECT_NAMESPACE::atomic_max_(lvalue, v)
+#define SHARED_ADD(lvalue, v) ::DIALECT_NAMESPACE::shared_add_(lvalue, v)
+#define SHARED_OR(lvalue, v) ::DIALECT_NAMESPACE::shared_or_(lvalue, v)
+#define SHARED_MIN(lvalue, v) ::DIALECT_NAMESPACE::shared_min_(lvalue, v)
+#define SHARED_MAX(lvalue, v) ::DIALECT_NAMESPACE::shared_max_(lvalue, v)
 
-namespace topple::kernels {
+namespace DIALECT_NAMESPACE {
 template <class T>
 FN T atomic_min_(T& place, std::type_identity_t<T> value) {
     std::atomic_ref<T> a(place);
@@ -178,4 +184,4 @@ FN float abs(float v) { return __builtin_fabsf(v); }
 FN int abs(int v) { return v < 0 ? -v : v; }
 FN uint float_bits(float v) { return __builtin_bit_cast(uint, v); }
 FN float bits_float(uint v) { return __builtin_bit_cast(float, v); }
-}  // namespace topple::kernels
+}  // namespace DIALECT_NAMESPACE

@@ -5,8 +5,9 @@
 
 #include "clouds.h"
 #include "core/random.h"
-#include "kernels/device_harness.h"
+#include "errors.h"
 #include "topple/embed.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::stages {
 namespace {

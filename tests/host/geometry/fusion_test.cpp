@@ -3,9 +3,9 @@
 #include "core/depth_noise.h"
 #include "points/frames_fusion.h"
 #include "points/frames_witnesses.h"
-#include "random.h"
 #include "testing.h"
 #include "topple/error.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::geometry {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "clouds.h"
 #include "device/devices.h"
-#include "random.h"
 #include "testing.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::geometry {
 namespace {

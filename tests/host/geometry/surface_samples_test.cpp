@@ -8,8 +8,8 @@
 #include "geometry/surface_gaps.h"
 #include "geometry/surfel_discs.h"
 #include "geometry/surfel_graph.h"
-#include "random.h"
 #include "testing.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::geometry {
 namespace {

@@ -5,9 +5,9 @@
 #include "core/random.h"
 #include "device/devices.h"
 #include "points/given_attributes.h"
-#include "random.h"
 #include "testing.h"
 #include "topple/error.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::geometry {
 namespace {

@@ -6,8 +6,8 @@
 #include "host/geometry/split_scenes.h"
 #include "points/single_scan.h"
 #include "points/virtual_views.h"
-#include "random.h"
 #include "testing.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::geometry {
 namespace {

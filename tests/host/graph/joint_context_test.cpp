@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "graph/joint_context.h"
 
+#include "errors.h"
 #include "fitted/network.h"
-#include "kernels/device_harness.h"
 #include "oracle/message_passing_oracle.h"
-#include "random.h"
+#include "topple/kernel_testing/each_backend.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::graph {
 namespace {

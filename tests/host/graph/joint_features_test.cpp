@@ -2,6 +2,7 @@
 #include "graph/joint_features.h"
 
 #include "core/random.h"
+#include "errors.h"
 #include "geometry/primitive_shapes.h"
 #include "graph/greedy_contraction.h"
 #include "graph/joints.h"
@@ -10,7 +11,7 @@
 #include "host/geometry/sampled_faces.h"
 #include "host/graph/chain_walk.h"
 #include "host/graph/floor_scene.h"
-#include "kernels/device_harness.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::graph {
 namespace {

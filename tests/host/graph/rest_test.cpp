@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "graph/rest.h"
 
+#include "errors.h"
 #include "graph/stable_objects.h"
 #include "host/graph/floor_scene.h"
-#include "kernels/device_harness.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::graph {
 namespace {

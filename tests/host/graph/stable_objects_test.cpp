@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "graph/stable_objects.h"
 
+#include "errors.h"
 #include "graph/group_stances.h"
 #include "host/graph/floor_scene.h"
-#include "kernels/device_harness.h"
 #include "physics/tipping.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::graph {
 namespace {

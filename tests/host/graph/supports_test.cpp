@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "graph/supports.h"
 
+#include "errors.h"
 #include "graph/false_feet.h"
 #include "host/graph/floor_scene.h"
 #include "host/solids/cell_column.h"
-#include "kernels/device_harness.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::graph {
 namespace {

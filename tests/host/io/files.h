@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "errors.h"
-#include "random.h"
+#include "topple/kernel_testing/random.h"
 
 // What the tests of readers and writers share.
 namespace topple::test {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "errors.h"
 #include "host/physics/solids.h"
-#include "kernels/device_compare.h"
-#include "kernels/device_harness.h"
 #include "oracle/geodesic_sphere.h"
 #include "physics/merge_close_points.h"
 #include "physics/part_hulls.h"
 #include "physics/rectangle.h"
+#include "topple/kernel_testing/compare.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::physics {
 namespace {

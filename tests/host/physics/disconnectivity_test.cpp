@@ -6,14 +6,15 @@
 
 #include "device/devices.h"
 #include "host/physics/hulls.h"
-#include "kernels/device_compare.h"
 #include "oracle/flood_oracle.h"
 #include "oracle/geodesic_sphere.h"
 #include "physics/assess.h"
 #include "physics/body_landscape.h"
 #include "physics/hull_landscape.h"
 #include "physics/sliding.h"
+#include "testing.h"
 #include "topple/error.h"
+#include "topple/kernel_testing/compare.h"
 
 namespace topple::physics {
 namespace {

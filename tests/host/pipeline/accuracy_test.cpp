@@ -3,11 +3,12 @@
 #include <locale>
 
 #include "core/number_text.h"
+#include "errors.h"
 #include "host/pipeline/scan.h"
 #include "io/text.h"
-#include "kernels/device_harness.h"
 #include "result/scene_json.h"
 #include "small_room.h"
+#include "topple/kernel_testing/each_backend.h"
 
 // How much of a room a parse must understand. The bounds lie well below what is reached, and well
 // above what a parse that has gone wrong somewhere can reach.

@@ -2,12 +2,13 @@
 #include "safety/human/human_field.h"
 
 #include "core/random.h"
-#include "kernels/device_harness.h"
+#include "errors.h"
 #include "oracle/disturbance_oracle.h"
 #include "room.h"
 #include "safety/human/body_parts.h"
 #include "safety/human/convolution.h"
 #include "safety/human/walkable_map.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::safety {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "core/random.h"
-#include "kernels/device_harness.h"
+#include "errors.h"
 #include "room.h"
 #include "safety/human/body_parts.h"
 #include "safety/human/footprint.h"
 #include "safety/human/human_field.h"
 #include "safety/human/secondary_motion.h"
 #include "safety/human/walkable_map.h"
+#include "topple/kernel_testing/each_backend.h"
 
 namespace topple::safety {
 namespace {

@@ -4,8 +4,8 @@
 #include "clouds.h"
 #include "core/thread_pool.h"
 #include "geometry/algebraic_model.h"
-#include "random.h"
 #include "testing.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::solids {
 namespace {

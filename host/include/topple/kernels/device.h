@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "device/kernel.h"
 #include "topple/device.h"
+#include "topple/kernels/kernel.h"
 
 // The whole device abstraction: a Device allocates Memory and runs lists of Dispatches. The typed
 // faces that the rest of the host uses are Buffer<T> (buffer.h) and Queue (queue.h).
@@ -131,6 +132,12 @@ class Device {
     std::unique_ptr<ThreadPool> threads_;  // made when first asked for
     std::atomic<bool> in_use_{false};
 };
+
+// The forms in which a kernel runs: each backend's own, and that of real GPUs on whatever device
+// there is for Vulkan. A kernel gives the same bits in all of them, so tests run each.
+inline constexpr std::array forms{"native", "opencl", "vulkan", "vulkan_as_gpu"};
+// Opens the device of one of them. Throws Error as open_device() does.
+std::shared_ptr<Device> open_form(const std::string& form);
 
 // Lives while a public function uses a device. Throws Error(usage) where another one does, on
 // another thread or further up on this one.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "perf/kernels/probes.h"
+
 #include <memory>
 
 #include "divide.hpp"
 #include "gather.hpp"
 #include "multiply_add.hpp"
-#include "perf/cases/cases.h"
 #include "triad.hpp"
 
 namespace topple::perf {

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "device/buffer.h"
-#include "device/queue.h"
-#include "random.h"
-#include "testing.h"
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "topple/kernel_testing/random.h"
+#include "topple/kernels/buffer.h"
+#include "topple/kernels/queue.h"
 
 // Running a kernel, and comparing what it gives element by element.
 namespace topple::test {

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "device/devices.h"
-#include "device/vulkan/vulkan_device.h"
-#include "errors.h"
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "topple/error.h"
+#include "topple/kernels/device.h"
 
 namespace topple::test {
 
@@ -19,7 +24,7 @@ class EachBackend : public ::testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {
         try {
-            device = open(GetParam());
+            device = device::open_form(GetParam());
         } catch (const Error& error) {
             if (backends_required())
                 FAIL() << "backend " << GetParam() << " is missing: " << error.what();
@@ -27,13 +32,6 @@ class EachBackend : public ::testing::TestWithParam<const char*> {
         }
         ASSERT_TRUE(std::string(GetParam()).starts_with(device::to_string(device->info().backend)));
     }
-    static std::shared_ptr<device::Device> open(const std::string& name) {
-        if (name != gpu_form) return device::open_device(name);
-        return std::make_shared<device::VulkanDevice>(
-            device::open_vulkan_context(), device::VulkanOptions{.force_gpu_form = true});
-    }
-    static constexpr const char* gpu_form = "vulkan_as_gpu";
-
     std::shared_ptr<device::Device> device;
 };
 
@@ -42,7 +40,7 @@ inline auto all_backends() {
 }
 // And by Vulkan also as on a real GPU.
 inline auto all_forms() {
-    return ::testing::Values("native", "opencl", "vulkan", "vulkan_as_gpu");
+    return ::testing::ValuesIn(device::forms);
 }
 inline std::string backend_name(const ::testing::TestParamInfo<const char*>& info) {
     return info.param;

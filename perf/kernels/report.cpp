@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "perf/report.h"
+#include "perf/kernels/report.h"
 
+#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
-#include "io/replace_file.h"
+#include "core/printable.h"
 #include "topple/version.h"
 
 namespace topple::perf {
@@ -52,6 +52,25 @@ std::string quoted(const std::string& text) {
     return out += '"';
 }
 
+// As JSON.
+std::string number(double v) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof(text), v).ptr};
+}
+std::string numbers(const std::vector<double>& values) {
+    std::string out = "[";
+    for (const double v : values) out += (out.size() > 1 ? ", " : "") + number(v);
+    return out + "]";
+}
+std::string text(const std::string& from) {
+    std::string out = "\"";
+    for (const char c : printable(from, std::string::npos)) {
+        if (c == '"' || c == '\\') out += '\\';
+        out += c;
+    }
+    return out + "\"";
+}
+
 }  // namespace
 
 void print_results(const std::vector<Result>& results) {
@@ -72,60 +91,38 @@ void print_results(const std::vector<Result>& results) {
     std::fflush(stdout);
 }
 
-void print_score(const scenes::Score& s) {
-    std::printf(
-        "\nscore: parts mIoU %.3f, Hamming %.3f, missing %.3f, false alarm %.3f; objects mIoU "
-        "%.3f\n",
-        s.parts.miou, s.parts.hamming, s.parts.missing, s.parts.false_alarm, s.objects.miou);
-    std::printf(
-        "       volume precision %.3f, recall %.3f; fixed recall %.3f, precision %.3f; support "
-        "recall %.3f, precision %.3f; "
-        "gravity %.2f deg\n",
-        s.volume.precision.value, s.volume.recall.value, s.relations.fixed_recall.value,
-        s.relations.fixed_precision.value, s.relations.support_recall.value,
-        s.relations.support_precision.value, s.gravity_deg);
-    std::fflush(stdout);
-}
-
-void write_json(const std::string& path, const std::vector<Result>& results) {
-    nlohmann::json list = nlohmann::json::array();
+std::string json_text(const std::vector<Result>& results) {
+    std::ostringstream out;
+    out << "{\n \"schema\": \"topple.perf/2\",\n \"topple_version\": " << text(version)
+        << ",\n \"machine\": {\"cpu\": " << text(cpu_name())
+        << ", \"cores\": " << std::thread::hardware_concurrency() << "},\n \"results\": [";
+    const char* between = "\n";
     for (const Result& r : results) {
-        list.push_back({{"backend", r.backend},
-                        {"device", r.device},
-                        {"driver", r.driver},
-                        {"gpu", r.gpu},
-                        {"case", r.name},
-                        {"unit", r.work.unit},
-                        {"items", r.work.items},
-                        {"bytes", r.work.bytes},
-                        {"operations", r.work.operations},
-                        {"divisions", r.work.divisions},
-                        {"gathers", r.work.gathers},
-                        {"samples_s", r.samples_s},
-                        {"samples_cpu_s", r.samples_cpu_s},
-                        {"best_s", r.best()},
-                        {"best_cpu_s", r.best_cpu()},
-                        {"median_s", r.median()},
-                        {"share", r.share},
-                        {"bound", r.bound},
-                        {"hash", hex(r.hash)},
-                        {"counts",
-                         {{"dispatches", r.counters.dispatches},
-                          {"submits", r.counters.submits},
-                          {"kernel_builds", r.counters.kernel_builds},
-                          {"bytes_written", r.counters.bytes_written},
-                          {"bytes_read", r.counters.bytes_read},
-                          {"bytes_bound", r.counters.bytes_bound}}}});
+        const auto& c = r.counters;
+        out << between << "  {\"backend\": " << text(r.backend)
+            << ", \"device\": " << text(r.device) << ", \"driver\": " << text(r.driver)
+            << ", \"gpu\": " << (r.gpu ? "true" : "false") << ", \"case\": " << text(r.name)
+            << ", \"unit\": " << text(r.work.unit) << ", \"items\": " << number(r.work.items)
+            << ", \"bytes\": " << number(r.work.bytes)
+            << ", \"operations\": " << number(r.work.operations)
+            << ", \"divisions\": " << number(r.work.divisions)
+            << ", \"gathers\": " << number(r.work.gathers)
+            << ", \"samples_s\": " << numbers(r.samples_s)
+            << ", \"samples_cpu_s\": " << numbers(r.samples_cpu_s)
+            << ", \"best_s\": " << number(r.best()) << ", \"best_cpu_s\": " << number(r.best_cpu())
+            << ", \"median_s\": " << number(r.median()) << ", \"share\": " << number(r.share)
+            << ", \"bound\": " << text(r.bound) << ", \"hash\": " << text(hex(r.hash))
+            << ", \"counts\": {\"dispatches\": " << c.dispatches << ", \"submits\": " << c.submits
+            << ", \"kernel_builds\": " << c.kernel_builds
+            << ", \"bytes_written\": " << c.bytes_written << ", \"bytes_read\": " << c.bytes_read
+            << ", \"bytes_bound\": " << c.bytes_bound << "}}";
+        between = ",\n";
     }
-    const nlohmann::json root{
-        {"schema", "topple.perf/2"},
-        {"topple_version", version},
-        {"machine", {{"cpu", cpu_name()}, {"cores", std::thread::hardware_concurrency()}}},
-        {"results", list}};
-    io::replace_file(path, root.dump(1) + "\n");
+    out << "\n ]\n}\n";
+    return out.str();
 }
 
-void write_csv(const std::string& path, const std::vector<Result>& results) {
+std::string csv_text(const std::vector<Result>& results) {
     std::ostringstream out;
     out << "backend,device,driver,case,best_ms,median_ms,worst_ms,best_cpu_ms,samples,items,unit,"
            "bytes,operations,divisions,gathers,share,bound,dispatches,submits,bytes_written,bytes_"
@@ -141,7 +138,7 @@ void write_csv(const std::string& path, const std::vector<Result>& results) {
             << ',' << r.counters.bytes_read << ',' << r.counters.bytes_bound << ','
             << r.counters.kernel_builds << ',' << hex(r.hash) << '\n';
     }
-    io::replace_file(path, out.str());
+    return out.str();
 }
 
 }  // namespace topple::perf

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "device/buffer.h"
+#include "topple/kernels/buffer.h"
 
 namespace topple::device {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "device/device.h"
 #include "topple/error.h"
+#include "topple/kernels/device.h"
 
 namespace topple::device {
 

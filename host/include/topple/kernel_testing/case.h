@@ -4,14 +4,13 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "device/queue.h"
+#include "topple/kernels/queue.h"
 
 // What is measured: one case for each kernel. Inputs are the same on every backend, so that the
-// hashes of the results must be, too.
+// hashes of the results must be, too. topple_add_kernel_cases makes a program of a project's own.
 namespace topple::perf {
 
 // The work of one run, independent of how a backend does it.
@@ -40,9 +39,6 @@ struct Case {
     const char* name;  // the kernel's
     Prepared (*prepare)(device::Device&);
 };
-
-// In the order in which data passes the kernels; the four probes first.
-std::span<const Case> all_cases();
 
 // FNV-1a over 32-bit words.
 class Hash {

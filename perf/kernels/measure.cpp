@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "perf/measure.h"
+#include "perf/kernels/measure.h"
 
 #include <algorithm>
 #include <cmath>

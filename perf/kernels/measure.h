@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "device/device.h"
-#include "perf/case.h"
-#include "perf/stopwatch.h"
+#include "perf/kernels/stopwatch.h"
+#include "topple/kernel_testing/case.h"
+#include "topple/kernels/device.h"
 
 namespace topple::perf {
 
