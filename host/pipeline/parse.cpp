@@ -30,9 +30,6 @@ FoundParts find_parts(device::Device& device, Observation input, const ParseOpti
         check_memory_of(input, out.voxel_m, options);
         return find_solids(device, input, out.voxel_m, options, stage);  // 2
     });
-    // From here on in the input's frame.
-    surfaces.frame.origin_m = input.origin_m;
-    voxels.scene->set_origin(input.origin_m);
     if (!surfaces.frame.note.empty()) out.notes.push_back(surfaces.frame.note);
     out.notes.insert(out.notes.end(), input.notes.begin(), input.notes.end());
     if (voxels.solids->primitives() == 0) fail_without_surface(input, source, extent);

@@ -16,6 +16,9 @@ SurfacesAndVolume find_solids(device::Device& device, const Observation& input, 
     SurfacesAndVolume out;
     out.geometry = find_primitives(device, input, std::move(surfels), stage);       // 2.1
     out.voxels = fill_volume(device, input, out.geometry, carving, stage, detail);  // 2.2
+    // From here on in the input's frame.
+    out.geometry.frame.origin_m = input.origin_m;
+    out.voxels.scene->set_origin(input.origin_m);
     return out;
 }
 

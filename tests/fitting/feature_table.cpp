@@ -119,6 +119,7 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     about["node_names"] = geometry::shell_feature_names();
     about["joint_names"] = graph::joint_feature_names();
     about["axes"] = geometry.frame.axes;
+    about["origin"] = geometry.frame.origin_m;
     about["offset"] = input.own.offset_m;
     about["structure"] = structure;
     about["edge"] = samples.spacing_m;

@@ -58,7 +58,7 @@ class Table:
         self.nodes = np.fromfile(folder / 'nodes.f32', '<f4').reshape(-1, len(self.node_names))
         self.joints = np.fromfile(folder / 'joints.f32', '<f4').reshape(-1, len(self.joint_names))
         self.pairs = np.fromfile(folder / 'pairs.i32', '<i4').reshape(-1, 2)
-        samples = np.fromfile(folder / 'samples.f32', '<f4').reshape(-1, 3) @ np.array(about['axes'])
+        samples = np.fromfile(folder / 'samples.f32', '<f4').reshape(-1, 3) @ np.array(about['axes']) + about['origin']
         primitive = np.fromfile(folder / 'primitive.i32', '<i4')
         truth = read_ply(scan / 'truth.ply')
         objects = json.loads((scan / 'truth.json').read_text())['objects']

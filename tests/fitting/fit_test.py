@@ -116,18 +116,18 @@ class Fitting(unittest.TestCase):
                                              for a, axis in enumerate('xyz')] + [('object', '<i4', list(places))])
             (folder / 'truth.json').write_text(json.dumps({'objects': [
                 {'id': n, 'fixed': n == 1, 'shell': n == 0, 'pile': False} for n in places]}))
-            axes = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]], 'f8')
+            axes, origin = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]], 'f8'), np.array([0.3, -2, 1.5])
             of = [0] * 6 + [1] * 6 + [2] * 6 + [3] * 2 + [4] * 6
             where = [0] * 6 + [1] * 6 + [2] * 4 + [3] * 2 + [3] * 2 + [2] * 6
             seen = np.array([places[w] for w in where]) + [0, 0, 0.02]
             seen[-6:-3] += 0.5  # half of the last far from all that is known
-            (seen @ axes.T).astype('<f4').tofile(folder / 'samples.f32')
+            ((seen - origin) @ axes.T).astype('<f4').tofile(folder / 'samples.f32')
             np.array(of, '<i4').tofile(folder / 'primitive.i32')
             np.array([[0, 1], [1, 2], [2, 4], [2, 3]], '<i4').tofile(folder / 'pairs.i32')
             np.array([[2], [1], [4], [3], [5]], '<f4').tofile(folder / 'nodes.f32')
             np.zeros((4, 2), '<f4').tofile(folder / 'joints.f32')
             (folder / 'table.json').write_text(json.dumps(
-                {'node_names': ['log_area'], 'joint_names': ['shell_small', 'shell_big'], 'axes': axes.tolist()}))
+                {'node_names': ['log_area'], 'joint_names': ['shell_small', 'shell_big'], 'axes': axes.tolist(), 'origin': origin.tolist()}))
             table = fit.Table(folder, folder, 0)
         self.assertEqual(table.owner[:3].tolist(), [0, 0, 2])
         self.assertEqual(table.is_shell[:3].tolist(), [True, True, False])

@@ -94,7 +94,7 @@ void judge_bases(EvaluateArguments& a) {
     evaluation::BasisCounts counts;
     for_each_room(a, [&] {
         const evaluation::RoomParts room = evaluation::scan_parts(a.options);
-        evaluation::add_voxels(room.world, *room.solids, room.axes, counts);
+        evaluation::add_voxels(room.world, *room.solids, room.frame, counts);
     });
     tell(a, "bases.txt", evaluation::table_of(counts));
 }

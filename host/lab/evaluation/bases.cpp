@@ -5,7 +5,6 @@
 
 #include "lab/evaluation/text.h"
 #include "lab/scores/volume_score.h"
-#include "vdb/voxel_scene.h"
 
 namespace topple::evaluation {
 namespace {
@@ -15,10 +14,10 @@ constexpr std::array<const char*, basis_count> names{
 
 }  // namespace
 
-void add_voxels(const scenes::World& truth, const SolidScene& solids,
-                const std::array<Vec3, 3>& axes, BasisCounts& counts) {
+void add_voxels(const scenes::World& truth, const SolidScene& solids, const vdb::VoxelFrame& frame,
+                BasisCounts& counts) {
     const SolidCells& cells = solids.cells();
-    const SolidVoxels solid = vdb::solid_voxels({cells.voxel_m, axes}, cells, {});
+    const SolidVoxels solid = vdb::solid_voxels(frame, cells, {});
     const std::vector<scenes::Verdict> verdict = scenes::verdicts(truth, solid, cells.voxel_m);
     for (std::size_t n = 0; n < verdict.size(); ++n) {
         BasisCounts::Count& count = counts.basis[static_cast<std::size_t>(cells.basis[n])];

@@ -8,6 +8,7 @@
 #include "core/basis.h"
 #include "core/solid_scene.h"
 #include "lab/solids/scene.h"
+#include "vdb/voxel_scene.h"
 
 // How often what a rule takes to be solid is solid: what core/basis.h has its probabilities from.
 namespace topple::evaluation {
@@ -19,10 +20,9 @@ struct BasisCounts {
     std::array<Count, basis_count> basis{};
 };
 
-// Adds the solid voxels of a room, judged as scenes::volume_score does for its precision. axes: of
-// the grid frame, in the input's.
-void add_voxels(const scenes::World& truth, const SolidScene& solids,
-                const std::array<Vec3, 3>& axes, BasisCounts& counts);
+// Adds the solid voxels of a room, judged as scenes::volume_score does for its precision.
+void add_voxels(const scenes::World& truth, const SolidScene& solids, const vdb::VoxelFrame& frame,
+                BasisCounts& counts);
 
 std::string table_of(const BasisCounts& counts);
 

@@ -14,6 +14,7 @@
 #include "lab/evaluation/text.h"
 #include "lab/temporary_folder.h"
 #include "points/observation.h"
+#include "result/labelled_points.h"
 #include "solids/find_solids.h"
 
 namespace topple::evaluation {
@@ -100,19 +101,15 @@ RoomParts scan_parts(const RoomOptions& options) {
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options.parse);
     device::Device& device = *options.parse.device;
-    const Observation input = observe(device, folder.path(), options.parse);
+    Observation input = observe(device, folder.path(), options.parse);
     const auto [geometry, voxels] =
         find_solids(device, input, options.parse.voxel_m, options.parse, stage);
-    ScenePoints points;
-    points.x.assign(input.cloud.x.begin(), input.cloud.x.end());
-    points.y.assign(input.cloud.y.begin(), input.cloud.y.end());
-    points.z.assign(input.cloud.z.begin(), input.cloud.z.end());
-    points.primitive = numbered(geometry.primitive_of_point, voxels.number);
+    ScenePoints points = labelled_points(input, geometry, voxels, true);
     std::vector<std::int32_t> part = scenes::true_parts(world, points);
     SolidParts solid = solid_parts(geometry, voxels);
     PartStage parts = weigh_parts(device, solid, options.parse, stage);
-    return {std::move(world),        std::move(points), std::move(part),
-            std::move(solid.solids), solid.frame.axes,  std::move(parts)};
+    return {std::move(world),        std::move(points),     std::move(part),
+            std::move(solid.solids), voxels.scene->frame(), std::move(parts)};
 }
 
 void add_examples(const RoomParts& room, JointExamples& examples) {

@@ -19,7 +19,7 @@ struct RoomParts {
     ScenePoints points;              // with their primitives
     std::vector<std::int32_t> part;  // the true part of each point, -1 for none
     std::shared_ptr<const SolidScene> solids;
-    std::array<Vec3, 3> axes;  // of the grid frame, in the input's
+    vdb::VoxelFrame frame;
     PartStage parts;
 };
 RoomParts scan_parts(const RoomOptions& options);

@@ -6,8 +6,8 @@
 
 #include "clouds.h"
 #include "core/vectors.h"
-#include "random.h"
 #include "standard.h"
+#include "topple/kernel_testing/random.h"
 
 namespace topple::test {
 namespace {

@@ -140,8 +140,7 @@ TEST(Bases, AreJudgedByTheTruth) {
     add(30, Basis::two_votes);
     add(40, Basis::column);
     BasisCounts counts;
-    add_voxels(world, SolidScene(std::move(cells), {Role::none}),
-               {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, counts);
+    add_voxels(world, SolidScene(std::move(cells), {Role::none}), {.voxel_m = 0.02}, counts);
     const auto of = [&](Basis b) { return counts.basis[static_cast<std::size_t>(b)]; };
     EXPECT_EQ(of(Basis::surface).of, 0u);
     EXPECT_EQ(of(Basis::two_votes).of, 6u);

@@ -3,11 +3,11 @@
 
 #include <thread>
 
+#include "device/devices.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
 #include "points/formats/read_cloud.h"
 #include "points/observation.h"
-#include "topple/kernels/device.h"
 
 // Clouds in the caller's memory, whatever their layout.
 namespace topple::test {
