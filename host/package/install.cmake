@@ -28,6 +28,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/kernels/tools/topple_add_kernels.cmake
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/perf/compare DESTINATION ${CMAKE_INSTALL_DATADIR}/topple/perf)
 install(FILES ${PROJECT_SOURCE_DIR}/perf/rule.py ${PROJECT_SOURCE_DIR}/perf/side.py DESTINATION ${CMAKE_INSTALL_DATADIR}/topple/perf)
 topple_component(kernels libtopple_kernels)
+topple_component(kernel_primitives libtopple_kernel_primitives)
 topple_component(kernel_testing libtopple_kernel_testing)
 if(TOPPLE_ONLY)
   return()

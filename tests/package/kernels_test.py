@@ -88,6 +88,30 @@ class Project:
         check(len(got) == 100, f'{len(got)} heights')
         return list(printed)
 
+    def sorts(self):
+        """With the primitives, which are installed, too."""
+        before = {'#include "topple/kernels/queue.h"\n': '#include "topple/kernels/primitives/sort.h"\n', '    queue.run();\n': """    using Words = Buffer<std::uint32_t>;
+    const std::vector<std::uint32_t> numbers{7, 1, 4, 1};
+    const Words keys(*device, numbers, "keys"), sorted(*device, numbers.size(), "sorted");
+    topple::primitives::Scratch scratch(*device);
+    topple::primitives::sort(queue, scratch, {keys, {}, {}}, {sorted, {}, {}});
+    queue.run();
+    for (const auto key : sorted.download()) std::printf("key %u\\n", key);
+"""}
+        links = {'COMPONENTS kernels': 'COMPONENTS kernels kernel_primitives', 'my_app PRIVATE my_kernels': 'my_app PRIVATE my_kernels topple::kernel_primitives'}
+        for place, then in before.items():
+            self.change('main.cpp', place, then)
+        for place, then in links.items():
+            self.change('CMakeLists.txt', place, then)
+        built, said = self.make()
+        check(built, said)
+        for form, printed in self.outputs().items():
+            check(re.findall(r'key (\d+)', printed) == ['1', '1', '4', '7'], f'{form}: {printed}')
+        for place, then in before.items():
+            self.change('main.cpp', then, place)
+        for place, then in links.items():
+            self.change('CMakeLists.txt', then, place)
+
     def tells_mistakes(self):
         last = 'smoothed[i] = sum / '
         for wrong, expected in ((last + '4.0 * ', r'smooth\.kernel:17: 4\.0 is a double in C\+\+ and OpenCL C; write the f behind it'),
@@ -172,6 +196,7 @@ def main():
     shutil.copytree(os.path.join(project.a.source, 'docs/examples/own-kernel'), project.source)
     project.configure(project.source, project.build, '-DCMAKE_PREFIX_PATH=' + project.prefix, '-DCMAKE_CXX_FLAGS=' + WARNINGS)
     project.runs()
+    project.sorts()
     project.tells_mistakes()
     project.builds_anew()
     project.configure(project.source, project.build, '-DCHECKS=ON')

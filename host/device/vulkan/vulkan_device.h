@@ -5,9 +5,11 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "device/vulkan/timestamps.h"
 #include "device/vulkan/vulkan_context.h"
 #include "device/vulkan/vulkan_handle.h"
 #include "topple/kernels/device.h"
@@ -20,7 +22,8 @@ struct VulkanOptions {
     bool force_gpu_form = false;  // kernels as for real GPUs, which may divide inexactly
     bool force_staging = false;   // copy through a staging buffer even where memory is unified
     std::uint64_t staging_bytes = 16u << 20;
-    std::uint32_t max_groups = 0;  // groups in one command; 0: the device's limit
+    std::uint64_t max_binding_bytes = 0;  // of one binding; 0: the device's limit
+    std::uint32_t max_groups = 0;         // groups in one command; 0: the device's limit
     std::uint32_t dispatches_per_submit = 4096;
 };
 
@@ -70,6 +73,7 @@ class VulkanDevice final : public Device {
     void fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) override;
     void fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
                     std::uint32_t word) override;
+    std::string time_dispatches() override;
     struct Built {
         VulkanHandle<VkDescriptorSetLayout> set_layout;
         VulkanHandle<VkPipelineLayout> layout;
@@ -84,7 +88,7 @@ class VulkanDevice final : public Device {
     Built build(const KernelSource& source) const;
     void reserve_descriptors(std::span<const Dispatch> dispatches);
     VkDescriptorSet describe(const Dispatch& dispatch, const Built& built);
-    void record(const Dispatch& dispatch);
+    void add_commands(const Dispatch& dispatch);
     void run_batch(std::span<const Dispatch> dispatches);
     void begin();
     void submit(const std::string& what);
@@ -102,6 +106,7 @@ class VulkanDevice final : public Device {
     VulkanHandle<VkFence> fence_;
     VulkanHandle<VkDescriptorPool> descriptor_pool_;
     std::uint32_t pool_sets_ = 0, pool_descriptors_ = 0;
+    std::optional<VulkanTimestamps> timestamps_;  // where they are recorded, and the queue has any
     VulkanBuffer staging_;
     std::map<const KernelSource*, Built> kernels_;  // looked up only, never iterated for a result
 };

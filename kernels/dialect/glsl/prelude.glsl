@@ -25,6 +25,9 @@
 #define NEAR_WORDS 0
 #define LOAD_NEAR(to, from, base, place) EACH_ITEM(i) { to[i] = from[(base) + place[i]]; }
 
+#define STORE_LINE(to, at, from, base) for (uint k_ = 0u; k_ < 16u; k_++) { to[(at) + k_] = from[(base) + k_]; }
+#define LINES_STORED
+
 #define GLOBAL_ID gl_GlobalInvocationID.x
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID gl_WorkGroupID.x

@@ -91,6 +91,10 @@ using Bound_ = ::topple::device::NativeArgs;
 #define LOAD_NEAR(to, from, base, place) \
     ::DIALECT_NAMESPACE::load_near_<ITEMS>(to, (from) + (base), place);
 
+// They go past the caches, where the processor can, and LINES_STORED waits for them.
+#define STORE_LINE(to, at, from, base) ::topple::kernels::store_line_((to) + (at), (from) + (base));
+#define LINES_STORED ::topple::kernels::lines_stored_();
+
 #define GLOBAL_ID global_id_
 #define LOCAL_ID local_id_
 #define GROUP_ID group_id_
@@ -166,6 +170,28 @@ FN void load_near_(T (&to)[items], const T* from, const int (&place)[items]) {
     }
 #endif
     for (int i = 0; i < items; i++) to[i] = from[place[i]];
+}
+FN void store_line_(uint* to, const uint* from) {
+#ifdef __AVX512F__
+    typedef long long Line __attribute__((vector_size(64)));
+    Line line;
+    std::memcpy(&line, from, sizeof(line));
+    __builtin_ia32_movntdq512(reinterpret_cast<Line*>(to), line);
+#elif defined(__AVX2__)
+    typedef long long Half __attribute__((vector_size(32)));
+    for (int k = 0; k < 16; k += 8) {
+        Half half;
+        std::memcpy(&half, from + k, sizeof(half));
+        __builtin_ia32_movntdq256(reinterpret_cast<Half*>(to + k), half);
+    }
+#else
+    std::memcpy(to, from, 64);
+#endif
+}
+FN void lines_stored_() {
+#ifdef __AVX2__
+    __builtin_ia32_sfence();
+#endif
 }
 // NaN-free inputs are the kernels' contract. Of two zeros the first is taken, on every backend; both
 // operands are evaluated once.

@@ -26,6 +26,9 @@
 #define NEAR_WORDS 0
 #define LOAD_NEAR(to, from, base, place) EACH_ITEM(i) { to[i] = from[(base) + place[i]]; }
 
+#define STORE_LINE(to, at, from, base) for (uint k_ = 0u; k_ < 16u; k_++) { to[(at) + k_] = from[(base) + k_]; }
+#define LINES_STORED
+
 #define GLOBAL_ID ((uint)get_global_id(0))
 #define LOCAL_ID ((uint)get_local_id(0))
 #define GROUP_ID ((uint)get_group_id(0))

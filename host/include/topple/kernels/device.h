@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,9 @@ class ThreadPool;
 }
 
 namespace topple::device {
+
+class Trace;
+struct DispatchTime;
 
 // Offsets of bound ranges are multiples of this, on every backend. Vulkan asks for 256 at most,
 // some OpenCL GPUs for 512.
@@ -101,11 +105,20 @@ class Device {
 
     std::uint32_t items_per_lane(const KernelSource& kernel) const;
 
+    // Records what it does from now on; TOPPLE_TRACE has every device do so.
+    void record(std::shared_ptr<Trace> trace);
+    Trace* trace() const { return trace_.get(); }  // null where nothing is recorded
+
   protected:
     // write(), read() and fill() of memory that is not in place.
     virtual void send(Memory&, std::uint64_t, std::span<const std::byte>) {}
     virtual void fetch(Memory&, std::uint64_t, std::span<std::byte>) {}
     virtual void fill_apart(Memory&, std::uint64_t, std::uint64_t, std::uint32_t) {}
+    // Has dispatches timed from now on, and says by which clock.
+    virtual std::string time_dispatches() { return "the host's clock"; }
+    // The times of a batch that has just ended, by any clock: it is set by the last one's end.
+    void trace_dispatches(std::span<const Dispatch> dispatches, std::span<const DispatchTime> times,
+                          std::chrono::steady_clock::time_point ended);
     // Books a batch that was run.
     void count(std::span<const Dispatch> dispatches);
     // As the kind of memory that this device makes. Throws Error(device) where it is another's.
@@ -130,13 +143,16 @@ class Device {
     friend class InUse;
     void copy(std::byte* to, const std::byte* from, std::uint64_t bytes);
     std::unique_ptr<ThreadPool> threads_;  // made when first asked for
+    std::shared_ptr<Trace> trace_;
+    std::uint32_t trace_track_ = 0;  // of the dispatches
     std::atomic<bool> in_use_{false};
 };
 
 // The forms in which a kernel runs: each backend's own, and that of real GPUs on whatever device
 // there is for Vulkan. A kernel gives the same bits in all of them, so tests run each.
 inline constexpr std::array forms{"native", "opencl", "vulkan", "vulkan_as_gpu"};
-// Opens the device of one of them. Throws Error as open_device() does.
+// Opens the device of one of them, or of vulkan_small_bindings, where an array takes several
+// bindings from a megabyte on. Throws Error as open_device() does.
 std::shared_ptr<Device> open_form(const std::string& form);
 
 // Lives while a public function uses a device. Throws Error(usage) where another one does, on
