@@ -27,6 +27,17 @@ std::span<const Case> all_cases() {
         {"disturbance_reach", disturbance_reach},
         {"disturbance", disturbance},
         {"rocking", rocking},
+        {"primitives/reduction", reduction},
+        {"primitives/scan", scan},
+        {"primitives/compaction", compaction},
+        {"primitives/sort", sort_keys},
+        {"primitives/sort_wide_records", sort_wide_records},
+        {"primitives/unique", unique_wide_keys},
+        {"primitives/segmented_sum", segmented_sums},
+        {"primitives/segmented_scan", segmented_scan},
+        {"primitives/histogram", histogram},
+        {"primitives/gather", gather_words},
+        {"primitives/components", components},
     };
     return cases;
 }

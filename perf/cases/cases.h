@@ -27,5 +27,17 @@ Prepared group_stance(device::Device& device);
 Prepared disturbance_reach(device::Device& device);
 Prepared disturbance(device::Device& device);
 Prepared rocking(device::Device& device);
+// Data-parallel primitives, each as a whole.
+Prepared reduction(device::Device& device);
+Prepared scan(device::Device& device);
+Prepared compaction(device::Device& device);
+Prepared sort_keys(device::Device& device);
+Prepared sort_wide_records(device::Device& device);
+Prepared unique_wide_keys(device::Device& device);
+Prepared segmented_sums(device::Device& device);
+Prepared segmented_scan(device::Device& device);
+Prepared histogram(device::Device& device);
+Prepared gather_words(device::Device& device);
+Prepared components(device::Device& device);
 
 }  // namespace topple::perf
