@@ -6,7 +6,8 @@
 #include "vdb/voxel_scene.h"
 
 // Visibility carving (paper, 2.2.2) voxel by voxel and frame by frame, in double precision,
-// straight from the depth images: no hierarchy, no packing, no folded matrices.
+// straight from the depth images: no hierarchy, no packing, no folded matrices. Of the kernels
+// carve and carve_leaves.
 namespace topple::oracle {
 
 // Of a reading: base + growth * max(depth - from, 0)^2, metres, so many times.

@@ -4,7 +4,8 @@
 #include "standard.h"
 
 // The disturbance field in plain double precision, on a plain 2D grid, and the other way round than
-// the kernels: each walker scatters to the cells that a part reaches.
+// the kernels disturbance and disturbance_reach: each walker scatters to the cells that a part
+// reaches.
 namespace topple::oracle {
 
 struct Grid {

@@ -3,7 +3,8 @@
 
 #include "standard.h"
 
-// Six-direction filling (paper, 2.2.3) by walking from each voxel, on a dense grid.
+// Six-direction filling (paper, 2.2.3) by walking from each voxel, on a dense grid. Of the kernels
+// six_fill_sweep and six_fill_vote.
 namespace topple::oracle {
 
 // cell: 0 seen empty, 1 can be filled, 2 a surface without a vote, n + 3 the surface of primitive

@@ -166,7 +166,8 @@ TEST_P(JointContext, IsThatOfThePlainNetwork) {
 TEST_P(JointContext, HasTheBitsOfNative) {
     const AnyJoints given(300, 2000);
     const JointOdds here = in_context(*device, given.shapes, given.table, given.alone);
-    const JointOdds native = in_context(*device::open_form("native"), given.shapes, given.table, given.alone);
+    const JointOdds native =
+        in_context(*device::open_form("native"), given.shapes, given.table, given.alone);
     EXPECT_EQ(here.joints, native.joints);
     EXPECT_EQ(here.shell, native.shell);
 }
