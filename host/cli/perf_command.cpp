@@ -91,9 +91,10 @@ Command add_perf(CLI::App& app) {
     app.add_flag_function(
         "--no-roofline", [&suite](std::int64_t) { suite.roofline = false; },
         "Leave out the probes of bandwidth and arithmetic that no --filter names");
-    app.add_option("--profile", a->profile,
-                   "Parse this input instead, and print what each stage takes: time, memory,\n"
-                   "dispatches, and what goes to the device and back");
+    app.add_option(
+        "--profile", a->profile,
+        "Parse this input instead, and print what each stage takes: time, kernels, memory,\n"
+        "dispatches, and what goes to the device and back");
     app.add_flag("--list", a->list, "Print the names of the cases");
     return [a] { return run(*a); };
 }

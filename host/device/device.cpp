@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/thread_pool.h"
+#include "device/trace.h"
 #include "topple/error.h"
 #include "topple/kernels/queue.h"
 
@@ -15,6 +16,16 @@ const char* to_string(Backend backend) {
     constexpr std::array names{"native", "opencl", "vulkan"};
     return names.at(static_cast<std::size_t>(backend));
 }
+
+namespace {
+
+std::uint64_t bytes_bound(const Dispatch& dispatch) {
+    std::uint64_t bytes = 0;
+    for (const BoundRange& range : dispatch.ranges) bytes += range.bytes;
+    return bytes;
+}
+
+}  // namespace
 
 const DeviceInfo& describe(const Device& device) {
     return device.info();
@@ -49,13 +60,35 @@ Counters Device::counters() const {
             counters_.bytes_written, counters_.bytes_read, counters_.bytes_bound};
 }
 
+void Device::record(std::shared_ptr<Trace> trace) {
+    if (!trace) return;
+    trace_ = std::move(trace);
+    trace_track_ = trace_->add_track(info_.name + " (" + to_string(info_.backend) + "), by " +
+                                     time_dispatches());
+}
+
+void Device::trace_dispatches(std::span<const Dispatch> dispatches,
+                              std::span<const DispatchTime> times, Trace::Clock::time_point ended) {
+    for (std::size_t d = 0; d < times.size(); ++d) {
+        const auto at = [&](std::int64_t ns) {
+            return ended - std::chrono::nanoseconds(times.back().end_ns - ns);
+        };
+        trace_->add({"dispatch",
+                     dispatches[d].kernel->name,
+                     trace_track_,
+                     at(times[d].begin_ns),
+                     at(times[d].end_ns),
+                     {{"groups", dispatches[d].groups},
+                      {"bytes", bytes_bound(dispatches[d])},
+                      {"cpu_ns", times[d].cpu_ns}}});
+    }
+}
+
 void Device::count(std::span<const Dispatch> dispatches) {
     counters_.dispatches += dispatches.size();
     ++counters_.submits;
     std::uint64_t bound = 0;
-    for (const Dispatch& dispatch : dispatches) {
-        for (const BoundRange& range : dispatch.ranges) bound += range.bytes;
-    }
+    for (const Dispatch& dispatch : dispatches) bound += bytes_bound(dispatch);
     counters_.bytes_bound += bound;
 }
 
@@ -69,6 +102,7 @@ void Device::copy(std::byte* to, const std::byte* from, std::uint64_t bytes) {
 
 void Device::write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
     check_own(to);
+    const TraceSpan span(trace(), "write", to.name(), {{"bytes", from.size()}});
     if (std::byte* const address = to.in_place())
         copy(address + offset, from.data(), from.size());
     else
@@ -78,6 +112,7 @@ void Device::write(Memory& to, std::uint64_t offset, std::span<const std::byte> 
 
 void Device::read(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
     check_own(from);
+    const TraceSpan span(trace(), "read", from.name(), {{"bytes", to.size()}});
     if (const std::byte* const address = from.in_place())
         copy(to.data(), address + offset, to.size());
     else
@@ -87,6 +122,7 @@ void Device::read(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
 
 void Device::fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) {
     check_own(memory);
+    const TraceSpan span(trace(), "fill", memory.name(), {{"bytes", bytes}});
     std::byte* const address = memory.in_place();
     if (!address) return fill_apart(memory, offset, bytes, word);
     auto* first = reinterpret_cast<std::uint32_t*>(address + offset);
@@ -145,6 +181,8 @@ void Queue::run() {
     // Taken out first: a failed run must not leave its dispatches behind for the next one.
     const std::vector<Dispatch> batch = std::move(dispatches_);
     dispatches_.clear();
+    const TraceSpan span(device_.trace(), "batch", batch.back().kernel->name,
+                         {{"dispatches", batch.size()}});
     device_.run(batch);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/cancelling.h"
+#include "device/trace.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -26,6 +27,7 @@ class StageClock {
         if (options_.progress) options_.progress(name, 0);
         // Its place is made before: what ends a stage may be that there is no memory.
         Book book{*this, place_of(name), std::chrono::steady_clock::now()};
+        const device::TraceSpan span(trace_.get(), "stage", name);
         return stage();
     }
     void progress(const std::string& name, double done) const {
@@ -51,6 +53,7 @@ class StageClock {
     }
     std::vector<std::pair<std::string, double>>& timings_;
     const ParseOptions& options_;
+    std::shared_ptr<device::Trace> trace_ = device::Trace::of_environment();
 };
 
 }  // namespace topple

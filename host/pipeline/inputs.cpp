@@ -36,6 +36,7 @@ ParseResult run(const std::string& source, const ParseOptions& options, Find fin
     const Cancelling cancelling(*device, options);
     ParseResult result = judge_parts(*device, find(*device, stage), options, source, stage);
     result.scene.timings_s = std::move(timings);
+    if (device->trace()) device->trace()->write();
     return result;
 }
 

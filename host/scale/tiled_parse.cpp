@@ -346,6 +346,7 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
     const SharedWork shared{*crew, *device, folder, about};
     ParseResult result = parse_in_blocks(input, options, std::move(work), shared, stage);
     result.scene.timings_s = std::move(timings);
+    if (device->trace()) device->trace()->write();
     return result;
 }
 

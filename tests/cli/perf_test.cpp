@@ -43,7 +43,7 @@ TEST_F(Perf, profiles_a_parse) {
     EXPECT_THAT(line, HasSubstr("cpu s"));
     std::set<std::string> stages;
     std::string last;
-    while (std::getline(lines, line)) {
+    while (std::getline(lines, line) && !line.empty()) {
         std::istringstream columns(line);
         double wall = -1, cpu = -1;
         for (std::string word; columns >> word && !std::isdigit(word[0]); last = word) {
@@ -57,6 +57,22 @@ TEST_F(Perf, profiles_a_parse) {
     for (const char* stage : {"ingest", "filling", "grouping", "barriers", "output"})
         EXPECT_TRUE(stages.contains(stage)) << stage;
     EXPECT_EQ(last, "all");
+    // Then stage by stage each kernel, and what share they have.
+    std::set<std::string> kernels;
+    ASSERT_TRUE(std::getline(lines, line));
+    while (std::getline(lines, line) && !line.empty()) {
+        std::istringstream columns(line.substr(19));
+        std::string kernel;
+        double dispatches = 0, device_s = -1, cpu_s = -1, bound = -1;
+        columns >> kernel >> dispatches >> device_s >> cpu_s >> bound;
+        kernels.insert(kernel);
+        EXPECT_GE(dispatches, 1) << line;
+        EXPECT_GE(device_s, 0) << line;
+        EXPECT_GE(bound, 0) << line;
+    }
+    for (const char* kernel : {"six_fill_sweep", "support_function", "rocking"})
+        EXPECT_TRUE(kernels.contains(kernel)) << kernel;
+    EXPECT_TRUE(std::getline(lines, line) && line.starts_with("Kernels ran in ")) << line;
     fails(1, "perf --profile none.ply", {"none.ply"});
 }
 

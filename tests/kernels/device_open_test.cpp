@@ -321,9 +321,14 @@ TEST_P(DeviceDialect, RoundsAsIeee754OnEveryBackend) {
     const device::Buffer<std::uint32_t> m(*device, in.m, "m"), n(*device, in.n, "n");
     const Guarded<float> f(*device, 10ull * count, "f");
     const Guarded<std::uint32_t> w(*device, 6ull * count, "w");
+    Guarded<std::uint32_t> line(*device, count, "line");
+    line.upload(std::vector<std::uint32_t>(count, 7));
     run_kernel<kernels::DialectProbe>(
-        *device, count, {.a = a, .b = b, .m = m, .n = n, .f = f.slice(), .w = w.slice()},
+        *device, count,
+        {.a = a, .b = b, .m = m, .n = n, .f = f.slice(), .w = w.slice(), .line = line.slice()},
         {.count = count});
+    std::vector<std::uint32_t> lines = in.m;
+    std::fill(lines.begin() + count / 16 * 16, lines.end(), 7);
     const std::vector<float> want = expected_floats(in);
     std::vector<float> got = f.download();
     if (device->info().gpu && device->info().backend == device::Backend::vulkan)
@@ -332,6 +337,8 @@ TEST_P(DeviceDialect, RoundsAsIeee754OnEveryBackend) {
     EXPECT_TRUE(same(w.download(), expected_words(in)));
     EXPECT_TRUE(f.untouched());
     EXPECT_TRUE(w.untouched());
+    EXPECT_TRUE(same(line.download(), lines));
+    EXPECT_TRUE(line.untouched());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
 #include <new>
@@ -9,6 +10,7 @@
 
 #include "core/thread_pool.h"
 #include "device/devices.h"
+#include "device/trace.h"
 #include "topple/error.h"
 
 namespace topple::device {
@@ -71,6 +73,7 @@ class NativeDevice final : public Device {
         const std::uint64_t memory = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
                                      static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
         info_.limits = {memory, memory, memory, 1024, 1u << 20};
+        record(Trace::of_environment());
     }
 
     std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override {
@@ -86,7 +89,10 @@ class NativeDevice final : public Device {
     ThreadPool& threads() override { return pool_; }
 
     void run(std::span<const Dispatch> dispatches) override {
+        std::vector<DispatchTime> times;
         for (const Dispatch& dispatch : dispatches) {
+            const std::int64_t begin_ns = trace() ? to_ns(Trace::Clock::now()) : 0;
+            std::atomic<std::uint64_t> cpu_ns = 0;
             std::vector<void*> addresses;
             addresses.reserve(dispatch.ranges.size());
             for (const BoundRange& range : dispatch.ranges) {
@@ -103,9 +109,16 @@ class NativeDevice final : public Device {
             const std::uint64_t chunk =
                 std::max(least, dispatch.groups / (std::uint64_t{pool_.threads()} * 16) + 1);
             pool_.run(dispatch.groups, chunk, [&](std::uint64_t first, std::uint64_t last) {
+                const std::uint64_t before = trace() ? thread_cpu_ns() : 0;
                 entry(args, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+                if (trace()) cpu_ns += thread_cpu_ns() - before;
             });
+            if (trace()) times.push_back({begin_ns, to_ns(Trace::Clock::now()), cpu_ns});
         }
+        if (!times.empty())
+            trace_dispatches(
+                dispatches, times,
+                Trace::Clock::time_point(std::chrono::nanoseconds(times.back().end_ns)));
         count(dispatches);
     }
 

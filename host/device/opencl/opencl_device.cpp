@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "device/opencl/opencl_error.h"
+#include "device/trace.h"
 #include "topple/error.h"
 
 namespace topple::device {
@@ -37,6 +38,12 @@ class Unmapped {
     std::vector<OpenClMemory*> memories_;
 };
 
+std::string ending_in(std::span<const Dispatch> dispatches) {
+    return dispatches.empty()
+               ? "empty batch"
+               : std::string("batch ending in kernel ") + dispatches.back().kernel->name;
+}
+
 std::string one_line(std::string text) {
     while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.pop_back();
     std::ranges::replace(text, '\n', ' ');
@@ -65,6 +72,7 @@ OpenClDevice::OpenClDevice(std::unique_ptr<OpenClContext> context) : context_(st
     if (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) {
         build_options_ += " -cl-fp32-correctly-rounded-divide-sqrt";
     }
+    record(Trace::of_environment());
 }
 
 std::unique_ptr<Memory> OpenClDevice::allocate(std::uint64_t bytes, const std::string& name) {
@@ -99,6 +107,7 @@ void OpenClDevice::prepare(const KernelSource& source) {
 cl_kernel OpenClDevice::kernel(const KernelSource& source) {
     auto found = kernels_.find(&source);
     if (found == kernels_.end()) {
+        const TraceSpan span(trace(), "build", source.name);
         found = kernels_.emplace(&source, build(source)).first;
         ++counters_.kernel_builds;
     }
@@ -140,7 +149,7 @@ OpenClDevice::Built OpenClDevice::build(const KernelSource& source) const {
     throw Error(ErrorKind::device, where + " does not build for " + info_.name + ": " + why);
 }
 
-void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts) {
+void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts, cl_event* event) {
     const std::string where = std::string("kernel ") + dispatch.kernel->name;
     const cl_kernel kernel_handle = kernel(*dispatch.kernel);
     cl_uint index = 0;
@@ -162,8 +171,51 @@ void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts) 
     const std::size_t local = dispatch.kernel->group_size;
     const std::size_t global = dispatch.groups * local;
     cl_check(clEnqueueNDRangeKernel(context_->queue, kernel_handle, 1, nullptr, &global, &local, 0,
-                                    nullptr, nullptr),
+                                    nullptr, event),
              where);
+}
+
+void OpenClDevice::finish(const std::string& what) {
+    const TraceSpan span(trace(), "wait", what);
+    cl_check(clFinish(context_->queue), what);
+}
+
+std::string OpenClDevice::time_dispatches() {
+    profiles_ = context_->profile();
+    return profiles_ ? "its own clock"
+                     : "the host's clock, one by one: the queue that was given does not profile";
+}
+
+// With CL_QUEUE_PROFILING_ENABLE as the device says, else as the host sees each one.
+void OpenClDevice::run_timed(std::span<const Dispatch> dispatches, std::vector<ClMem>& parts) {
+    const std::uint64_t cpu_before = process_cpu_ns();
+    std::vector<ClEvent> events;
+    std::vector<DispatchTime> times;
+    for (const Dispatch& dispatch : dispatches) {
+        const std::int64_t begin_ns = to_ns(Trace::Clock::now());
+        cl_event event = nullptr;
+        enqueue(dispatch, parts, profiles_ ? &event : nullptr);
+        if (profiles_) {
+            events.emplace_back(event);
+        } else {
+            finish(std::string("kernel ") + dispatch.kernel->name);
+            times.push_back({begin_ns, to_ns(Trace::Clock::now())});
+        }
+    }
+    if (profiles_) finish(ending_in(dispatches));
+    const auto ended = Trace::Clock::now();
+    const std::uint64_t cpu_ns = process_cpu_ns() - cpu_before;
+    for (const ClEvent& event : events) {
+        const auto at = [&](cl_profiling_info what) {
+            cl_ulong ns = 0;
+            cl_check(clGetEventProfilingInfo(event.get(), what, sizeof(ns), &ns, nullptr),
+                     "time of a kernel");
+            return static_cast<std::int64_t>(ns);
+        };
+        times.push_back({at(CL_PROFILING_COMMAND_START), at(CL_PROFILING_COMMAND_END)});
+    }
+    share_cpu(times, cpu_ns);
+    trace_dispatches(dispatches, times, ended);
 }
 
 void OpenClDevice::run(std::span<const Dispatch> dispatches) {
@@ -175,15 +227,16 @@ void OpenClDevice::run(std::span<const Dispatch> dispatches) {
     std::vector<ClMem> parts;
     // In-order: each dispatch sees what the ones before it wrote.
     try {
-        for (const Dispatch& dispatch : dispatches) enqueue(dispatch, parts);
+        if (trace()) {
+            run_timed(dispatches, parts);
+        } else {
+            for (const Dispatch& dispatch : dispatches) enqueue(dispatch, parts, nullptr);
+            finish(ending_in(dispatches));
+        }
     } catch (const Error&) {
         clFinish(context_->queue);
         throw;
     }
-    cl_check(clFinish(context_->queue),
-             dispatches.empty()
-                 ? "empty batch"
-                 : std::string("batch ending in kernel ") + dispatches.back().kernel->name);
     count(dispatches);
 }
 

@@ -21,6 +21,7 @@ struct ClRelease {
 };
 using ClProgram = std::unique_ptr<_cl_program, ClRelease<cl_program, clReleaseProgram>>;
 using ClKernel = std::unique_ptr<_cl_kernel, ClRelease<cl_kernel, clReleaseKernel>>;
+using ClEvent = std::unique_ptr<_cl_event, ClRelease<cl_event, clReleaseEvent>>;
 using ClMem = std::unique_ptr<_cl_mem, ClRelease<cl_mem, clReleaseMemObject>>;
 
 // A context, one device and one in-order queue, released at the end only where `owned`.
@@ -34,6 +35,9 @@ struct OpenClContext {
     OpenClContext(const OpenClContext&) = delete;
     OpenClContext& operator=(const OpenClContext&) = delete;
     ~OpenClContext();
+
+    // Lets the queue time what it runs; one that is the caller's stays as it is. Whether it does.
+    bool profile();
 };
 
 // What a device says of itself.
@@ -64,7 +68,7 @@ class OpenClMemory final : public Memory {
     struct Free {
         void operator()(std::byte* p) const { std::free(p); }
     };
-    const cl_command_queue queue_;
+    const OpenClContext& context_;
     std::unique_ptr<std::byte, Free> host_;  // null where the device has memory of its own
     cl_mem buffer_ = nullptr;
     bool mapped_ = false;
@@ -86,16 +90,19 @@ class OpenClDevice final : public Device {
     void fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) override;
     void fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
                     std::uint32_t word) override;
+    std::string time_dispatches() override;
     struct Built {
         ClProgram program;
         ClKernel kernel;
     };
     cl_kernel kernel(const KernelSource& source);
     Built build(const KernelSource& source) const;
-    void enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts);
+    void enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts, cl_event* event);
+    void finish(const std::string& what);
+    void run_timed(std::span<const Dispatch> dispatches, std::vector<ClMem>& parts);
 
     std::unique_ptr<OpenClContext> context_;
-    bool shares_host_memory_ = false;
+    bool shares_host_memory_ = false, profiles_ = false;
     std::string build_options_;
     std::map<const KernelSource*, Built> kernels_;  // looked up only, never iterated for a result
 };

@@ -13,7 +13,7 @@ constexpr std::uint64_t opencl_tail = 16;
 }  // namespace
 
 OpenClMemory::OpenClMemory(const OpenClDevice& device, std::uint64_t bytes, const std::string& name)
-    : Memory(device, bytes, name), queue_(device.handles().queue) {
+    : Memory(device, bytes, name), context_(device.handles()) {
     cl_mem_flags flags = CL_MEM_READ_WRITE;
     if (device.shares_host_memory()) {
         const std::uint64_t padded = (bytes + opencl_tail + page - 1) / page * page;
@@ -33,14 +33,14 @@ OpenClMemory::OpenClMemory(const OpenClDevice& device, std::uint64_t bytes, cons
 
 OpenClMemory::OpenClMemory(const OpenClDevice& device, cl_mem buffer, std::uint64_t bytes,
                            const std::string& name)
-    : Memory(device, bytes, name), queue_(device.handles().queue), buffer_(buffer) {
+    : Memory(device, bytes, name), context_(device.handles()), buffer_(buffer) {
     cl_check(clRetainMemObject(buffer_), "buffer " + name);
 }
 
 OpenClMemory::~OpenClMemory() {
     if (mapped_) {
-        clEnqueueUnmapMemObject(queue_, buffer_, host_.get(), 0, nullptr, nullptr);
-        clFinish(queue_);
+        clEnqueueUnmapMemObject(context_.queue, buffer_, host_.get(), 0, nullptr, nullptr);
+        clFinish(context_.queue);
     }
     clReleaseMemObject(buffer_);
 }
@@ -54,7 +54,7 @@ std::byte* OpenClMemory::host_address() {
 void OpenClMemory::map() {
     if (mapped_) return;
     cl_int code = CL_SUCCESS;
-    clEnqueueMapBuffer(queue_, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+    clEnqueueMapBuffer(context_.queue, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
                        bytes() + opencl_tail, 0, nullptr, nullptr, &code);
     cl_check(code, "mapping buffer " + name());
     mapped_ = true;
@@ -62,7 +62,7 @@ void OpenClMemory::map() {
 
 void OpenClMemory::unmap() {
     if (!mapped_) return;
-    cl_check(clEnqueueUnmapMemObject(queue_, buffer_, host_.get(), 0, nullptr, nullptr),
+    cl_check(clEnqueueUnmapMemObject(context_.queue, buffer_, host_.get(), 0, nullptr, nullptr),
              "unmapping buffer " + name());
     mapped_ = false;
 }

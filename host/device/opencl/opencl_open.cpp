@@ -100,6 +100,24 @@ OpenClContext::~OpenClContext() {
     if (context) clReleaseContext(context);
 }
 
+bool OpenClContext::profile() {
+    cl_command_queue_properties properties = 0;
+    cl_check(
+        clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof(properties), &properties, nullptr),
+        "OpenCL queue");
+    if (properties & CL_QUEUE_PROFILING_ENABLE) return true;
+    if (!owned) return false;
+    const std::lock_guard lock(drivers);
+    cl_int code = CL_SUCCESS;
+    const cl_command_queue profiling =
+        clCreateCommandQueue(context, device, CL_QUEUE_PROFILING_ENABLE, &code);
+    cl_check(code, "OpenCL queue that profiles");
+    clFinish(queue);
+    clReleaseCommandQueue(queue);
+    queue = profiling;
+    return true;
+}
+
 DeviceInfo describe_opencl(cl_device_id device) {
     DeviceInfo info;
     info.backend = Backend::opencl;

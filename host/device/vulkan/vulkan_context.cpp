@@ -203,6 +203,10 @@ std::string vulkan_problem(VkPhysicalDevice physical) {
     return {};
 }
 
+std::uint32_t timestamp_bits(VkPhysicalDevice physical, std::uint32_t family) {
+    return families_of(physical).at(family).timestampValidBits;
+}
+
 bool family_computes(VkPhysicalDevice physical, std::uint32_t family) {
     const auto families = families_of(physical);
     return family < families.size() && computes(families[family]);

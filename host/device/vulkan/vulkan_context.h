@@ -50,6 +50,9 @@ DeviceInfo describe_vulkan(VkPhysicalDevice physical);
 // Why a physical device can't be used; empty where it can.
 std::string vulkan_problem(VkPhysicalDevice physical);
 
+// How many low bits of its timestamps count in this family of queues; 0 where it writes none.
+std::uint32_t timestamp_bits(VkPhysicalDevice physical, std::uint32_t family);
+
 // Whether the device has this family of queues, and the family computes.
 bool family_computes(VkPhysicalDevice physical, std::uint32_t family);
 

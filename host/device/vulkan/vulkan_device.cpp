@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "device/devices.h"
+#include "device/trace.h"
 #include "device/vulkan/vulkan_error.h"
 #include "topple/embed.h"
 #include "topple/error.h"
@@ -14,6 +15,7 @@ VulkanDevice::VulkanDevice(std::unique_ptr<VulkanContext> context, const VulkanO
     : context_(std::move(context)), options_(options) {
     info_ = describe_vulkan(context_->physical);
     as_gpu_ = info_.gpu || options_.force_gpu_form;
+    if (options_.max_binding_bytes) info_.limits.max_binding_bytes = options_.max_binding_bytes;
     vkGetPhysicalDeviceMemoryProperties(context_->physical, &memory_);
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(context_->physical, &properties);
@@ -38,6 +40,7 @@ VulkanDevice::VulkanDevice(std::unique_ptr<VulkanContext> context, const VulkanO
     fence_ =
         vk_make(context_->device, vkCreateFence, vkDestroyFence, fence, info_.name + ": fence");
     if (!unified_) staging_ = create_staging(options_.staging_bytes);
+    record(Trace::of_environment());
 }
 
 VulkanDevice::~VulkanDevice() {
@@ -58,6 +61,7 @@ void VulkanDevice::prepare(const KernelSource& source) {
 const VulkanDevice::Built& VulkanDevice::kernel(const KernelSource& source) {
     auto found = kernels_.find(&source);
     if (found == kernels_.end()) {
+        const TraceSpan span(trace(), "build", source.name);
         found = kernels_.emplace(&source, build(source)).first;
         ++counters_.kernel_builds;
         check_validation(std::string("kernel ") + source.name);
@@ -202,11 +206,12 @@ void VulkanDevice::submit(const std::string& what) {
     const VkFence fence = fence_.get();
     vk_check(vkResetFences(context_->device, 1, &fence), what);
     vk_check(vkQueueSubmit(context_->queue, 1, &info, fence), what);
+    const TraceSpan span(trace(), "wait", what);
     vk_check(vkWaitForFences(context_->device, 1, &fence, VK_TRUE, UINT64_MAX), what);
     check_validation(what);
 }
 
-void VulkanDevice::record(const Dispatch& dispatch) {
+void VulkanDevice::add_commands(const Dispatch& dispatch) {
     const Built& built = kernel(*dispatch.kernel);
     const VkDescriptorSet set = describe(dispatch, built);
     vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.pipeline.get());
@@ -224,6 +229,9 @@ void VulkanDevice::record(const Dispatch& dispatch) {
 void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
     reserve_descriptors(dispatches);
     begin();
+    if (timestamps_) timestamps_->begin(commands_, static_cast<std::uint32_t>(dispatches.size()));
+    const std::uint64_t cpu_before = trace() ? process_cpu_ns() : 0;
+    const std::int64_t begin_ns = trace() ? to_ns(Trace::Clock::now()) : 0;
     const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr,
                                   VK_ACCESS_SHADER_WRITE_BIT,
                                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT};
@@ -233,13 +241,31 @@ void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
                                  VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &barrier, 0, nullptr,
                                  0, nullptr);
         }
-        record(dispatches[i]);
+        add_commands(dispatches[i]);
+        if (timestamps_) timestamps_->mark(commands_);
     }
     submit(dispatches.size() == 1
                ? std::string("kernel ") + dispatches[0].kernel->name
                : "batch of " + std::to_string(dispatches.size()) +
                      " dispatches, the last of kernel " + dispatches.back().kernel->name);
+    if (trace()) {
+        const auto ended = Trace::Clock::now();
+        std::vector<DispatchTime> times{{begin_ns, to_ns(ended)}};
+        if (timestamps_) times = timestamps_->times();
+        share_cpu(times, process_cpu_ns() - cpu_before);
+        trace_dispatches(dispatches, times, ended);
+    }
     count(dispatches);
+}
+
+std::string VulkanDevice::time_dispatches() {
+    const std::uint32_t bits = timestamp_bits(context_->physical, context_->queue_family);
+    if (bits > 0) {
+        timestamps_.emplace(*context_, bits);
+        return "its own clock";
+    }
+    options_.dispatches_per_submit = 1;
+    return "the host's clock, one by one: the queue writes no timestamps";
 }
 
 void VulkanDevice::run(std::span<const Dispatch> dispatches) {
