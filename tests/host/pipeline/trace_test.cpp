@@ -30,7 +30,7 @@ TEST_P(ParseTrace, HasStagesAndKernels) {
     }
     EXPECT_EQ(trace.names("stage"), stages);
     EXPECT_NEAR(1e-6 * trace.microseconds("stage"), all_s, 0.02 * all_s);
-    for (const char* kernel : {"voxel_normals", "six_fill_sweep", "support_function", "rocking"})
+    for (const char* kernel : {"voxel_normals", "six_fill_sweep", "rocking"})
         EXPECT_TRUE(trace.names("dispatch").contains(kernel)) << kernel;
 }
 
