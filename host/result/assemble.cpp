@@ -111,8 +111,9 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.barrier_error_J = from.barrier_error_J;
             to.release_J = from.instability.release_J;
             if (from.seen_enough()) {
-                to.support_height_m = from.candidate.support_height_m;
-                to.center_height_m = from.candidate.body.center[2] - to.support_height_m;
+                to.support_height_m = to_input.height(from.candidate.support_height_m);
+                to.center_height_m =
+                    from.candidate.body.center[2] - from.candidate.support_height_m;
                 to.overturning = from.overturning;
             }
             to.overturning.direction = to_input.way(to.overturning.direction);

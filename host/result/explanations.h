@@ -19,6 +19,8 @@ class ToInput {
         : axes_(frame.axes), origin_m_(frame.origin_m) {}
     Vec3 place(const Vec3& g) const { return plus(way(g), origin_m_); }
     Vec3 way(const Vec3& g) const { return turned_back(axes_, g); }
+    // Along up from the input's origin, of that from the grid's.
+    double height(double g) const { return g + dot(axes_[2], origin_m_); }
     // Of standard errors along the grid's axes, those along the input's.
     Vec3 errors(const Vec3& g) const {
         Vec3 out{};

@@ -139,6 +139,7 @@ TEST_F(SparseCloud, AStandingBoxIsTheSameFromAnotherOrigin) {
         EXPECT_NEAR(box->barrier_J, first->barrier_J, 0.02 * first->barrier_J) << shift[0];
         EXPECT_EQ(box->mass_model, first->mass_model) << shift[0];
         // What is known within the cells is in the input's frame again.
+        EXPECT_NEAR(box->support_height_m, shift[2], 0.01) << shift[0];
         const Vec3 off = minus(minus(box->center_of_mass_m, shift), first->center_of_mass_m);
         EXPECT_LT(length(off), 0.002) << shift[0];
     }
