@@ -322,7 +322,7 @@ def test_viewpoints_that_are_not_finite_are_told(points, device):
 def test_points_in_centimetres_are_told(device):
     patch = np.random.default_rng(3).random((2000, 3), np.float32) * np.float32([4, 4, 0.001])
     corners = np.concatenate([patch + np.float32(at) for at in ((0, 0, 0), (120, 0, 0), (0, 120, 0), (0, 0, 120))])
-    with raises('input', r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*use voxel_m \(--voxel\) = '):
+    with raises('input', r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: (.*or|the scene.s bounds, .* hold \d+ blocks of 8x8x8 voxels, .*;) use voxel_m \(--voxel\) = '):
         quick(corners, device, voxel_m=0.02)
 
 

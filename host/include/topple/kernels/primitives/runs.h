@@ -13,7 +13,7 @@ struct Segments {
     static Segments of_keys(const Words& low, const Words& high) { return {low, high, 3}; }
 
     Words low, high;
-    std::uint32_t kind;  // RUN_OF_... of kernels/math.h
+    std::uint32_t kind;  // RUN_OF_... of kernels/primitives/functions.h
 };
 
 // Of each run its key and where it begins; count[0]: the number of runs. Outputs hold as many words
