@@ -14,6 +14,24 @@ inline constexpr auto kind<InstabilityStep> = described(
     field("S_J", &InstabilityStep::S_J, "energy that it can release then, joules"));
 
 template <>
+inline constexpr auto kind<Alternative> = described(
+    "Alternative", "What a doubtful object may be in place of what it was taken for.",
+    field("probability", &Alternative::probability, "that it is this, 0 to 1"),
+    field("whole", &Alternative::whole,
+          "the larger object that it is one thing with; -1: it is two things",
+          Note{.rule = Rule::objects_or_none}),
+    field("mass_kg", &Alternative::mass_kg,
+          "of that whole, or of the one of the two that falls more easily, kilograms"),
+    field("barrier_J", &Alternative::barrier_J, "its barrier, joules"),
+    field("barrier_error_J", &Alternative::barrier_error_J, "one standard error of that"),
+    field("unsafety_category", &Alternative::unsafety_category,
+          "the category it would have, as measured; none at all: not `seen_enough`, or no "
+          "disturbance was asked for",
+          Note{.one_of = "\"none\", \"low\", \"medium\", \"high\"",
+               .whole_null = true,
+               .or_none = true}));
+
+template <>
 inline constexpr auto kind<Fragility::Step> = described(
     nullptr, "A peak of earthquakes.",
     field("pga_g", &Fragility::Step::pga_g, "peak ground acceleration, in g"),
@@ -261,6 +279,9 @@ inline constexpr auto kind<Object> = described(
           "the two primitives of that joint; -1, -1: it has one part",
           Note{.since = "weakest_joint", .rule = Rule::primitives_or_none},
           &topple_object::weakest_joint),
+    field("alternatives", &Object::alternatives,
+          "what else it may be, 25 % likely or more, the likelier first",
+          Note{.since = "alternatives"}),
     field("inertia_kg_m2", &Object::inertia_kg_m2,
           "tensor about its centre of mass, along the input's axes", Note{.since = "mass_model"},
           &topple_object::inertia_kg_m2),

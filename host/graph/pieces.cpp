@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -50,6 +51,36 @@ Table<ObjectId, WeakestJoint> weakest_joints(std::span<const Joint> joints, cons
             out[o] = {fitted::probability(j.log_odds), j.a, j.b};
         join(a, b);
     }
+    return out;
+}
+
+std::vector<std::vector<std::int32_t>> both_sides(std::span<const Joint> joints,
+                                                  const KnownLinks& links,
+                                                  std::span<const std::int32_t> primitives,
+                                                  const WeakestJoint& joint) {
+    const auto place = [&](std::int32_t p) -> std::optional<std::size_t> {
+        const auto at = std::ranges::lower_bound(primitives, p);
+        if (at == primitives.end() || *at != p) return std::nullopt;
+        return static_cast<std::size_t>(at - primitives.begin());
+    };
+    const std::size_t a = *place(joint.a), b = *place(joint.b);
+    UnionFind parts(primitives.size());
+    const auto join = [&](std::int32_t p, std::int32_t q) {
+        const auto at = place(p), other = place(q);
+        if (!at || !other) return;
+        const std::size_t from = parts.root(*at), to = parts.root(*other);
+        const std::size_t ends[] = {parts.root(a), parts.root(b)};
+        const bool both = std::ranges::count(ends, from) + std::ranges::count(ends, to) == 2;
+        if (!both) parts.join(from, to);
+    };
+    for (const auto& [p, q] : links.together) join(p, q);
+    std::vector<Joint> likeliest_first(joints.begin(), joints.end());
+    std::erase_if(likeliest_first, [&](const Joint& j) { return !place(j.a) || !place(j.b); });
+    std::ranges::stable_sort(likeliest_first, std::ranges::greater{}, &Joint::log_odds);
+    for (const Joint& j : likeliest_first) join(j.a, j.b);
+    std::vector<std::vector<std::int32_t>> out(2);
+    for (std::size_t n = 0; n < primitives.size(); ++n)
+        out[parts.root(n) == parts.root(b) ? 1 : 0].push_back(primitives[n]);
     return out;
 }
 

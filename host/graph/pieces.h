@@ -44,6 +44,13 @@ Table<ObjectId, WeakestJoint> weakest_joints(std::span<const Joint> joints, cons
                                              TableView<PrimitiveId, std::uint64_t> surface,
                                              std::size_t objects);
 
+// An object's primitives, ascending, on both sides of that joint: all others are joined, the
+// likeliest first, as long as that leaves its ends apart. What no joint reaches is with the first.
+std::vector<std::vector<std::int32_t>> both_sides(std::span<const Joint> joints,
+                                                  const KnownLinks& links,
+                                                  std::span<const std::int32_t> primitives,
+                                                  const WeakestJoint& joint);
+
 // surface: the same of objects; those of none are nobody's whole, as the ground, which is no thing.
 // Objects known to be one, or none, are no question.
 Table<ObjectId, PieceOf> likely_pieces(std::span<const Joint> joints, const KnownLinks& links,

@@ -106,10 +106,10 @@ ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
         out.density_kg_m3.push_back(density[object_of(p)]);
         bodies[p].mass_kg = bodies[p].volume_m3 * out.density_kg_m3.back();
     }
-    const std::vector<physics::Symmetric> moments = physics::second_moments(
-        solids.cells(), static_cast<std::int32_t>(bodies.size()), solids.boundary());
+    out.moments = physics::second_moments(solids.cells(), static_cast<std::int32_t>(bodies.size()),
+                                          solids.boundary());
     const std::vector<physics::Symmetric> inertia =
-        physics::inertia_of_objects(moments, bodies, object_of, inertia_density);
+        physics::inertia_of_objects(out.moments, bodies, object_of, inertia_density);
     for (std::size_t o = 0; o < objects; ++o) {
         ObjectMasses::Object& object = out.objects[o];
         object.inertia = inertia[o];

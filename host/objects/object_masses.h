@@ -37,7 +37,8 @@ struct ObjectMasses {
         physics::Symmetric inertia{};       // about its centre of mass
         double alike_error_kg = 0;          // see physics/repeated_objects.h
     };
-    Table<PrimitiveId, double> density_kg_m3;  // mass over volume
+    Table<PrimitiveId, double> density_kg_m3;        // mass over volume
+    Table<PrimitiveId, physics::Symmetric> moments;  // physics::second_moments
     Table<ObjectId, Object> objects;
 };
 

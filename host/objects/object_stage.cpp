@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/thread_pool.h"
 #include "fitted/boosted_trees.h"
 #include "geometry/primitive_shapes.h"
 #include "graph/false_feet.h"
+#include "objects/alternatives.h"
+#include "objects/body_maker.h"
 #include "objects/find_hidden_walls.h"
 #include "physics/assess.h"
 #include "physics/body_landscape.h"
@@ -21,9 +22,6 @@
 
 namespace topple {
 namespace {
-
-// 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
-
 graph::ShellOdds shell_odds(Table<PrimitiveId, double> log_odds) {
     graph::ShellOdds out;
     for (const double odds : log_odds)
@@ -86,60 +84,32 @@ void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks
 }
 
 // Objects by group, the ground first.
-void collect_objects(const SolidScene& solids, const Table<PrimitiveId, bool>& shell, bool sensed,
-                     const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
-                     ObjectStage& out) {
-    const SolidCells& cells = solids.cells();
-    const BoundaryCells& boundary = solids.boundary();
+void collect_objects(const SolidScene& solids, const BodyMaker& maker, const ParseOptions& options,
+                     ThreadPool& threads, HandCorrections& hand, ObjectStage& out) {
     const Table<PrimitiveId, std::int32_t>& group = out.grouping.group;
-    const bool has_ground = grounded_object(out) == 0;
     std::int32_t objects = 0;
     for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
     const Table<ObjectId, KnownMass> known = hand.masses(
         out.object_of_primitive, static_cast<std::size_t>(objects), grounded_object(out));
-    const ObjectMasses masses = weigh_objects(solids, out.object_of_primitive, known,
-                                              grounded_object(out), options, out.bodies);
+    out.masses = weigh_objects(solids, out.object_of_primitive, known, grounded_object(out),
+                               options, out.bodies);
     Table<ObjectId, std::vector<std::int32_t>> members(known.size());
     for (std::size_t p = 0; p < group.size(); ++p)
         members[out.object_of_primitive[p]].push_back(static_cast<std::int32_t>(p));
-    const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
-    const auto errors = physics::volume_errors(cells, boundary);
+    const auto columns = graph::undersides(solids.cells(), out.object_of_primitive, members.size());
     out.floors = FloorHeights(solids);
     out.objects.resize(members.size());
     threads.each(members.size(), 1, [&](std::size_t o) {
         Body& object = out.objects[o];
-        object.candidate =
-            graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
-        object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
-                                                errors, masses.density_kg_m3);
-        const ObjectMasses::Object& mass = masses.objects[o];
+        object = maker.made(std::move(members[o]), columns[o],
+                            grounded_object(out) == static_cast<std::int32_t>(o));
+        const ObjectMasses::Object& mass = out.masses.objects[o];
         object.mass_model = mass.model;
         object.inertia = mass.inertia;
         add_independent(mass.contents_error, object.body_error);
         // What is off of alike things holds what is off of each by itself.
         object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
         if (mass.weighed) object.body_error.mass_kg = 0;
-        object.grounded = has_ground && o == 0;
-        if (!object.grounded) {
-            graph::Rest rest = graph::infer_rest(
-                object.candidate, columns[o], out.contacts, boundary,
-                std::max(object.body_error.center_m[0], object.body_error.center_m[1]),
-                out.floors.levels_m());
-            object.rest = rest.kind;
-            object.rest_probability = rest.probability;
-            object.margin_error_m = rest.margin_error_m;
-            if (sensed) object.unseen_margin_m = rest.unseen_margin_m;
-            object.candidate.stood = rest.kind != graph::RestKind::none;
-            object.candidate.support_polygon = std::move(rest.support_polygon);
-            object.candidate.support_height_m = rest.support_height_m;
-            object.floor_m = out.floors.below_m(rest.support_height_m);
-        }
-        object.lowest_m = std::numeric_limits<double>::infinity();
-        object.highest_m = -object.lowest_m;
-        for (const std::int32_t p : object.candidate.primitives) {
-            object.lowest_m = std::min(object.lowest_m, out.contacts.lowest_m[p]);
-            object.highest_m = std::max(object.highest_m, out.contacts.highest_m[p]);
-        }
     });
     Table<ObjectId, graph::Carried> carried;
     for (const Body& o : out.objects) carried.push_back({o.grounded, o.candidate.body.mass_kg});
@@ -306,15 +276,20 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
         return physics::part_hulls(cells, boundary, loose, device.threads());
     });
-    stage("barriers", [&] {
-        collect_objects(*solid.solids, parts.shell.pinned, solid.sensed != nullptr, options,
-                        device.threads(), hand, out);
+    const BodyMaker maker = stage("barriers", [&] {
+        BodyMaker made(*solid.solids, out, parts.shell.pinned, solid.sensed != nullptr);
+        collect_objects(*solid.solids, made, options, device.threads(), hand, out);
         out.hidden_walls = find_hidden_walls(
             solid, out.object_of_primitive, fixed_primitives(out.object_of_primitive, out.objects));
         find_barriers(device, hulls, *solid.solids, out.hidden_walls, out.object_of_primitive,
                       options.friction, out.objects, unseen_of(solid));
+        return made;
     });
     doubt_objects(parts.joints, hand.links(), cells, out);
+    stage("alternatives", [&] {
+        out.alternatives = find_alternatives(device, hulls, solid, maker, parts.joints,
+                                             hand.links(), options.friction, out);
+    });
     out.told = hand.tell(out.object_of_primitive, out.objects.size(), grounded_object(out));
     return out;
 }

@@ -69,16 +69,26 @@ struct Body {
 physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping,
                               double friction);
 
+// What a doubtful object may be in place of what it was taken for.
+struct OtherReading {
+    ObjectId object;         // which
+    double probability = 0;  // of the joint by which it would be so
+    ObjectId with;           // that it is one thing with; none: it is two things
+    Body body;               // the whole, or of both parts the one that falls more easily
+};
+
 struct ObjectStage {
     Table<PrimitiveId, physics::MassProperties> bodies;
     graph::ContactGraph contacts;
     std::vector<double> pair_probability;  // by pair of the contacts: that both are one solid
     graph::Grouping grouping;
+    ObjectMasses masses;
     Table<PrimitiveId, std::int32_t> object_of_primitive;  // the ground, if any, is object 0
     Table<ObjectId, Body> objects;
     FloorHeights floors;
     physics::HiddenWalls hidden_walls;
-    std::vector<Support> supports;  // sorted by (supporter, supported)
+    std::vector<OtherReading> alternatives;  // by object, the likelier one first
+    std::vector<Support> supports;           // sorted by (supporter, supported)
     HandCorrections::Told told;
     std::optional<TakenAway> taken;  // by hand from the parts, before all else here
 };

@@ -41,6 +41,7 @@ std::vector<Symmetric> inertia_of_objects(std::span<const Symmetric> moments,
     };
     std::vector<Sum> sums(density_kg_m3.size());
     for (std::size_t p = 0; p < bodies.size(); ++p) {
+        if (object_of_primitive[p] < 0) continue;
         Sum& sum = sums[object_of_primitive[p]];
         sum.volume += bodies[p].volume_m3;
         for (std::size_t a = 0; a < 3; ++a)

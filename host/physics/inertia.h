@@ -22,7 +22,7 @@ std::vector<Symmetric> second_moments(const SolidCells& cells, std::int32_t coun
                                       const BoundaryCells& boundary);
 
 // Moments and products of inertia of each object about the centre of its volume, kg m^2, grid
-// frame, at one density each. moments, bodies: by primitive.
+// frame, at one density each. moments, bodies: by primitive; object_of_primitive: -1 for none.
 std::vector<Symmetric> inertia_of_objects(std::span<const Symmetric> moments,
                                           std::span<const MassProperties> bodies,
                                           std::span<const std::int32_t> object_of_primitive,

@@ -162,6 +162,25 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
     }
 }
 
+// What objects may be else: those of another category are not certain of theirs.
+void add_alternatives(const ObjectStage& objects, const SafetyStage& safety, Scene& scene) {
+    for (std::size_t n = 0; n < objects.alternatives.size(); ++n) {
+        const OtherReading& from = objects.alternatives[n];
+        Object& object = scene.objects[from.object.place()];
+        Alternative to;
+        to.probability = from.probability;
+        to.whole = from.with;
+        to.mass_kg = from.body.candidate.body.mass_kg;
+        to.barrier_J = from.body.instability.barrier_J;
+        to.barrier_error_J = from.body.barrier_error_J;
+        if (from.body.seen_enough() && !safety.disturbances.empty()) {
+            to.unsafety_category = safety::to_string(safety.if_otherwise[n]);
+            object.unsafety_certain &= to.unsafety_category == object.unsafety_category;
+        }
+        object.alternatives.push_back(std::move(to));
+    }
+}
+
 void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& scene) {
     const auto object = [&](std::int32_t p) { return objects.object_of_primitive[p]; };
     std::set<std::pair<std::int32_t, std::int32_t>> carries;  // primitives, a < b
@@ -352,6 +371,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
                                   0,          0,          0,          1};
     add_primitives(parts, objects, to_input, scene);
     add_objects(objects, safety, to_input, scene);
+    add_alternatives(objects, safety, scene);
     add_contacts(objects, to_input, scene);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);

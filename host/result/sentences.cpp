@@ -77,7 +77,7 @@ struct Sentence {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
         }
-        return (object.mode == "slide" ? slides() : tips()) + foot() + piece() + several();
+        return (object.mode == "slide" ? slides() : tips()) + foot() + otherwise();
     }
 
     // Which is more than what was seen of it.
@@ -86,19 +86,28 @@ struct Sentence {
                    ? " Part of its foot, as a leg, may stand where nobody saw in."
                    : "";
     }
-    // Whose figures are those of a piece.
-    std::string piece() const {
-        if (object.piece_of < 0) return "";
-        const Object& whole = scene.objects[object.piece_of];
-        return " It may be a piece of " + numbered_object(whole) + " (" +
-               io::two_digits(100 * object.piece_probability) + " % likely).";
-    }
-    // Whose figures are those of two together.
-    std::string several() const {
-        if (!from.weakest.doubtful()) return "";
-        return " It may be two things (" + io::two_digits(100 * (1 - object.joint_probability)) +
-               " % likely): look whether its parts " + std::to_string(object.weakest_joint[0]) +
-               " and " + std::to_string(object.weakest_joint[1]) + " are one.";
+    // What it may be else: where that is about as likely, or changes its category.
+    std::string otherwise() const {
+        std::string text;
+        for (const Alternative& other : object.alternatives) {
+            const bool whole = other.whole >= 0;
+            const bool changes = !other.unsafety_category.empty() &&
+                                 other.unsafety_category != object.unsafety_category;
+            if (!changes && !(whole ? object.piece_of >= 0 : from.weakest.doubtful())) continue;
+            const std::string likely =
+                " (" + io::two_digits(100 * other.probability) + " % likely)";
+            text += whole ? " It may be a piece of " + numbered_object(scene.objects[other.whole]) +
+                                likely
+                          : " It may be two things" + likely + ": look whether its parts " +
+                                std::to_string(object.weakest_joint[0]) + " and " +
+                                std::to_string(object.weakest_joint[1]) + " are one";
+            if (changes)
+                text += (whole ? "; both together take " : "; one of them takes ") +
+                        energy(other.barrier_J) + " and would be \"" + other.unsafety_category +
+                        "\"";
+            text += ".";
+        }
+        return text;
     }
     std::string slides() const {
         if (!(why.way_m > 0)) {

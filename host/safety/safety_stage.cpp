@@ -82,6 +82,36 @@ void weigh_risks(std::span<const Body> objects, std::span<const safety::RiskObje
     out.unsafety.resize(at_risk.size(), 1.0);
 }
 
+// What categories objects would have if they were what they may be else: as exposed as they are, as
+// if all of it stood where they do.
+void weigh_alternatives(std::span<const OtherReading> alternatives,
+                        std::span<const safety::RiskObject> at_risk, SafetyStage& out) {
+    out.if_otherwise.resize(alternatives.size());
+    std::vector<bool> weighed(alternatives.size());
+    for (std::size_t left = alternatives.size(); left > 0;) {
+        // One of each object at a time.
+        std::vector<safety::RiskObject> changed(at_risk.begin(), at_risk.end());
+        std::vector<std::size_t> which;
+        ObjectId last;
+        for (std::size_t n = 0; n < alternatives.size(); ++n) {
+            const OtherReading& reading = alternatives[n];
+            if (weighed[n] || reading.object == last) continue;
+            last = reading.object;
+            weighed[n] = true;
+            which.push_back(n);
+            changed[reading.object.place()] = risk_objects({&reading.body, 1}).front();
+        }
+        left -= which.size();
+        for (const safety::Disturbance& d : out.disturbances) {
+            const std::vector<safety::Risk> risks = safety::risk_if(d, changed);
+            for (const std::size_t n : which) {
+                const safety::Risk& risk = risks[alternatives[n].object.place()];
+                out.if_otherwise[n] = std::max(out.if_otherwise[n], safety::category(risk, 1));
+            }
+        }
+    }
+}
+
 }  // namespace
 
 SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
@@ -107,7 +137,10 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
             if (!disturbance.gust_m_s.empty()) return disturbance.gust_m_s;
         return safety::tipping_gusts(device, around, at_risk, {});
     });
-    stage("risk", [&] { weigh_risks(objects.objects, at_risk, out); });
+    stage("risk", [&] {
+        weigh_risks(objects.objects, at_risk, out);
+        weigh_alternatives(objects.alternatives, at_risk, out);
+    });
     stage("advice", [&] {
         out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
                             out.disturbances, out.risk, options.friction, options.tolerable_J,

@@ -24,6 +24,7 @@ struct SafetyStage {
     std::vector<std::vector<double>> risk_error_J;  // as `risk`: one standard error of it
     std::vector<double> unsafety;                   // by object, 1 to 10
     std::vector<safety::CategoryEnds> category;     // by object
+    std::vector<safety::Category> if_otherwise;     // by alternative: the category it would have
     std::vector<double> gust_m_s;                   // by object: that tips it; NaN: none does
 };
 

@@ -2,7 +2,8 @@
 // topple_features SCAN OUT: what the fitted models see of a scan, for fit.py. Writes into the
 // folder OUT: table.json (names, counts, axes), and arrays of little-endian numbers: nodes.f32,
 // pairs.i32, joints.f32, log_odds.f32 (of the joints' own model, with and without colours),
-// samples.f32 (x y z, grid frame) and primitive.i32.
+// judged.f32 and judged_shell.f32 (log-odds that grouping starts from), samples.f32 (x y z, grid
+// frame) and primitive.i32.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -109,6 +110,12 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     write(folder / "pairs.i32", pairs);
     write(folder / "joints.f32", joints.rows);
     write(folder / "log_odds.f32", log_odds(joints.rows));
+    std::vector<float> judged, judged_shell;
+    for (const graph::Joint& j : weighed.joints) judged.push_back(static_cast<float>(j.log_odds));
+    for (const double odds : weighed.shell.log_odds)
+        judged_shell.push_back(static_cast<float>(odds));
+    write(folder / "judged.f32", judged);
+    write(folder / "judged_shell.f32", judged_shell);
     write(folder / "samples.f32", places);
     write(folder / "primitive.i32", samples.primitive);
     std::vector<int> structure;

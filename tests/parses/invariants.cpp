@@ -179,6 +179,15 @@ void check_object(const Object& o, std::size_t objects, double voxel_m) {
                           o.instability[n].S_J >= o.instability[n - 1].S_J),
                "an instability curve falls");
     }
+    for (const Alternative& other : o.alternatives) {
+        expect_share(other.probability, "the probability of an alternative");
+        expect(other.whole >= -1 && other.whole < static_cast<std::int32_t>(objects) &&
+                   other.whole != o.id,
+               "it may be one with no other object");
+        expect(other.mass_kg > 0, "an alternative without a mass");
+        expect_amount(other.barrier_J, "the barrier of an alternative");
+        expect_amount(other.barrier_error_J, "the error of that");
+    }
     for (const auto* risks : {&o.risk_J, &o.risk_spread_J, &o.risk_error_J})
         for (const auto& [name, joules] : *risks) expect_amount(joules, "the risk by " + name);
     expect_amount(o.fall.hits_J, "the energy of a landing");

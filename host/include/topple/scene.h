@@ -180,6 +180,16 @@ struct Fragility {
     double falls_per_year = none, return_years = none;  // with a hazard curve
 };
 
+// What a doubtful object may be in place of what it was taken for, and what that would mean.
+struct Alternative {
+    double probability = 0;   // that it is this
+    std::int32_t whole = -1;  // the object that it is one thing with; -1: it is two things
+    // Of the whole, or of the one of both parts that falls more easily.
+    double mass_kg = 0, barrier_J = 0, barrier_error_J = 0;
+    // As Object::unsafety_category, as measured; "": not seen enough, or no disturbance.
+    std::string unsafety_category;
+};
+
 // A set of primitives fixed to one another: one rigid body.
 struct Object {
     std::int32_t id = -1;
@@ -203,6 +213,9 @@ struct Object {
     // and no primitives where it has one part.
     double joint_probability = 1;
     std::array<std::int32_t, 2> weakest_joint{-1, -1};
+    // What else it may be, with a probability of a quarter or more, the likelier first: one thing
+    // with that larger object, or two things.
+    std::vector<Alternative> alternatives;
     // "solid", of the density that was given all through; "closed": furniture that is boards of
     // that density around ParseOptions::contents_kg_m3; or "hollow": a shell, as a correction says.
     std::string mass_model = "solid";

@@ -93,15 +93,22 @@ function largestRiskText(object) {
   return `Risk ${number(risk)}${within(error)} J per ${event}`;
 }
 
-// Below this an object is about as likely two (docs/output.md, joint_probability).
-const doubtfulJoint = 0.6;
+// What else an object may be, and what that would mean: "one thing with object 5, 41 % likely: then 35 J, low".
+function otherwiseTexts(scene, object, share) {
+  return (object.alternatives || []).map(other => {
+    const what = other.whole >= 0 ? `one thing with ${objectName(scene, other.whole)}` : 'two things';
+    const look = other.whole >= 0 ? '' : ` (look whether its parts ${object.weakest_joint.join(' and ')} are one)`;
+    const means = other.unsafety_category && other.unsafety_category !== object.unsafety_category ? `: then ${number(other.barrier_J)} J, ${other.unsafety_category}` : '';
+    return `perhaps ${what}${look}, ${share(other.probability)} likely${means}`;
+  });
+}
 
 // What may be otherwise, so that no figure is taken for more than it is.
-function howSureText(object) {
+function howSureText(scene, object) {
   if (object.grounded) return '';
   const share = value => `${Math.max(1, Math.round(100 * value))} %`, parts = [];
   if (object.agreement < 0.995) parts.push(`one whole thing: ${share(object.agreement)} likely`);
-  if (object.joint_probability < doubtfulJoint) parts.push(`perhaps two things, ${share(1 - object.joint_probability)} likely: look whether its parts ${object.weakest_joint.join(' and ')} are one`);
+  parts.push(...otherwiseTexts(scene, object, share));
   const held = {seen: 'seen', near: 'a gap that the scan left is bridged', leaning: 'it leans on what is beside it', hidden: 'not seen', none: 'not seen'}[object.rests_by];
   if (held && object.seen_enough === false) parts.push('what holds it was not seen');
   else if (held && object.rest_probability < 0.5) parts.push(`what holds it: ${held}, ${share(object.rest_probability)} likely, one of several readings`);
@@ -162,7 +169,7 @@ function riskCard(scene, object, on) {
   const say = (className, text) => { if (text) words.append(element('span', {className, text})); };
   say('mass', [object.name ? `object ${object.id}` : '', shortMass(scene, object), sizeText(object)].filter(text => text).join(', '));
   if (plain || doubtful) say('standing', largestRiskText(object));
-  say(isUnsure(object) ? 'doubt' : 'mass', howSureText(object));
+  say(isUnsure(object) ? 'doubt' : 'mass', howSureText(scene, object));
   const piece = pieceText(scene, object);
   if (piece) say('doubt', `Look first: it may be ${piece}. If so, say so below this card.`);
   say('mass', placeText(scene, object));

@@ -223,7 +223,7 @@ function showObject(panel, scene, id, choose, visit, acts) {
   const curve = fragilityChart(object);
   say(fragilityText(scene, object));
   say(yearsText(scene, object));
-  say(howSureText(object));
+  say(howSureText(scene, object));
   say(scene.verified ? verifiedObjectText(scene.verified, id) : '');
   panel.append(numberList(figuresOf(scene, object)));
 

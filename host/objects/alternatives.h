@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "objects/body_maker.h"
+
+// The other reading of objects that may be a piece of a larger one, or two in one.
+namespace topple {
+
+// Of each object that its joints doubt: as one thing with the larger object that it may be a piece
+// of, and as the two that it may be. Only that one object is another then, and it weighs what its
+// primitives weigh as they were read. By object, the likelier reading first.
+std::vector<OtherReading> find_alternatives(device::Device& device, const physics::PartHulls& hulls,
+                                           const SolidParts& parts, const BodyMaker& maker,
+                                           std::span<const graph::Joint> joints,
+                                           const graph::KnownLinks& links, double friction,
+                                           const ObjectStage& stage);
+
+}  // namespace topple
