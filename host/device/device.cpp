@@ -137,11 +137,11 @@ void Device::check_own(const Memory& memory) const {
 
 void Device::check_allocation(std::uint64_t bytes, const std::string& name) const {
     if (bytes > info_.limits.max_allocation_bytes)
-        throw Error(
-            ErrorKind::device,
-            "buffer " + name + ": " + std::to_string(bytes) + " bytes are more than the " +
-                std::to_string(info_.limits.max_allocation_bytes) + " that " + info_.name +
-                " allocates at once; use a larger voxel_m (--voxel), or the native backend");
+        throw OutOfMemory(ErrorKind::device, "buffer " + name + ": " + std::to_string(bytes) +
+                                                 " bytes are more than the " +
+                                                 std::to_string(info_.limits.max_allocation_bytes) +
+                                                 " that " + info_.name +
+                                                 " allocates at once, unlike the native backend");
 }
 
 std::uint64_t Queue::groups_for(const KernelSource& kernel, std::uint64_t count) const {
