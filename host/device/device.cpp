@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/thread_pool.h"
+#include "device/bounds_check.h"
 #include "device/trace.h"
 #include "topple/error.h"
 #include "topple/kernels/queue.h"
@@ -41,7 +42,7 @@ InUse::~InUse() {
     device_.in_use_ = false;
 }
 
-Device::Device() = default;
+Device::Device() : checks_bounds_(bounds_check_wanted()) {}
 Device::~Device() = default;
 
 ThreadPool& Device::threads() {
@@ -183,7 +184,10 @@ void Queue::run() {
     dispatches_.clear();
     const TraceSpan span(device_.trace(), "batch", batch.back().kernel->name,
                          {{"dispatches", batch.size()}});
-    device_.run(batch);
+    if (device_.checks_bounds())
+        run_checked(device_, batch);
+    else
+        device_.run(batch);
 }
 
 }  // namespace topple::device

@@ -115,6 +115,8 @@ class Device {
     // Records what it does from now on; TOPPLE_TRACE has every device do so.
     void record(std::shared_ptr<Trace> trace);
     Trace* trace() const { return trace_.get(); }  // null where nothing is recorded
+    // Whether kernels run in their checked forms: TOPPLE_CHECK=bounds.
+    bool checks_bounds() const { return checks_bounds_; }
 
   protected:
     // write(), read() and fill() of memory that is not in place.
@@ -152,6 +154,7 @@ class Device {
     std::unique_ptr<ThreadPool> threads_;  // made when first asked for
     std::shared_ptr<Trace> trace_;
     std::uint32_t trace_track_ = 0;  // of the dispatches
+    bool checks_bounds_;
     std::atomic<bool> in_use_{false};
 };
 
