@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/thread_pool.h"
+#include "device/bounds_check.h"
 #include "device/trace.h"
 #include "topple/error.h"
 #include "topple/kernels/queue.h"
@@ -41,7 +42,7 @@ InUse::~InUse() {
     device_.in_use_ = false;
 }
 
-Device::Device() = default;
+Device::Device() : checks_bounds_(bounds_check_wanted()) {}
 Device::~Device() = default;
 
 ThreadPool& Device::threads() {
@@ -137,11 +138,11 @@ void Device::check_own(const Memory& memory) const {
 
 void Device::check_allocation(std::uint64_t bytes, const std::string& name) const {
     if (bytes > info_.limits.max_allocation_bytes)
-        throw Error(
-            ErrorKind::device,
-            "buffer " + name + ": " + std::to_string(bytes) + " bytes are more than the " +
-                std::to_string(info_.limits.max_allocation_bytes) + " that " + info_.name +
-                " allocates at once; use a larger voxel_m (--voxel), or the native backend");
+        throw OutOfMemory(ErrorKind::device, "buffer " + name + ": " + std::to_string(bytes) +
+                                                 " bytes are more than the " +
+                                                 std::to_string(info_.limits.max_allocation_bytes) +
+                                                 " that " + info_.name +
+                                                 " allocates at once, unlike the native backend");
 }
 
 std::uint64_t Queue::groups_for(const KernelSource& kernel, std::uint64_t count) const {
@@ -183,7 +184,10 @@ void Queue::run() {
     dispatches_.clear();
     const TraceSpan span(device_.trace(), "batch", batch.back().kernel->name,
                          {{"dispatches", batch.size()}});
-    device_.run(batch);
+    if (device_.checks_bounds())
+        run_checked(device_, batch);
+    else
+        device_.run(batch);
 }
 
 }  // namespace topple::device

@@ -28,7 +28,12 @@ class StageClock {
         // Its place is made before: what ends a stage may be that there is no memory.
         Book book{*this, place_of(name), std::chrono::steady_clock::now()};
         const device::TraceSpan span(trace_.get(), "stage", name);
-        return stage();
+        try {
+            return stage();
+        } catch (const device::OutOfMemory& error) {  // it knows nothing of voxels
+            throw Error(error.kind(),
+                        error.what() + std::string("; use a larger voxel_m (--voxel)"));
+        }
     }
     void progress(const std::string& name, double done) const {
         end_if_cancelled(options_);

@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Builds one kernel source into the forms that the three backends run.
 
-  build_kernels.py OUT_DIR --params FILE --namespace NAME --root DIR [--kernel FILE [--functions FILE] --glslang PATH]
+  build_kernels.py OUT_DIR --params FILE --namespace NAME --root DIR [--kernel FILE [--functions FILE] --glslang PATH
+                   [--checked COMPILER]]
 
 Writes into OUT_DIR, for <name>.kernel:
   <name>.hpp         the kernel's typed description: Args (one member per binding), Params, source()
   <name>.source.cpp  its KernelSource: SPIR-V words, OpenCL text, native entries
   <name>.native.cpp  the C++ form, compiled once per instruction set
+and with --checked, whose preprocessor it takes, in the KernelSource also the forms that check indices (check_bounds.py):
+  <name>.checked.cpp the C++ form of those
 and without --kernel:
   params.hpp         the parameters of all kernels, as the host sees them
 
@@ -21,6 +24,8 @@ import re
 import struct
 import subprocess
 import sys
+
+import check_bounds
 
 SIZES = {'float': 4, 'uint': 4, 'int': 4}
 HOST_TYPES = {'float': 'float', 'uint': 'std::uint32_t', 'int': 'std::int32_t'}
@@ -177,11 +182,11 @@ def call_divide(words):
     return out
 
 
-def spirv(kernel, shared_text, glslang, out_dir):
+def spirv(kernel, shared_text, glslang, stem):
     glsl = ('#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n' + shared_text
             + kernel.body(f"layout(constant_id = 0) const int ITEMS = {kernel.items['vulkan']};\n"))
-    source = os.path.join(out_dir, kernel.name + '.comp')
-    binary = os.path.join(out_dir, kernel.name + '.spv')
+    source = stem + '.comp'
+    binary = stem + '.spv'
     with open(source, 'w', encoding='utf-8') as f:
         f.write(glsl)
     run = subprocess.run([glslang, '-V', '--keep-uncalled', '--target-env', 'vulkan1.1', '-S', 'comp', '-o', binary,
@@ -252,7 +257,7 @@ struct {camel} {{
 '''
 
 
-def native(kernel, common, namespace):
+def native(kernel, common, namespace, prelude='prelude.h'):
     """The C++ form, with the bindings spelled out for the prelude's macros."""
     const = {'IN': 'const ', 'OUT': '', 'INOUT': ''}
     load = ' '.join(f'auto* __restrict {n} = static_cast<{const[a]}{t}*>(args_.buffers[{i}]); (void){n};'
@@ -265,7 +270,7 @@ def native(kernel, common, namespace):
     shared = ' '.join(f'alignas(64) {t} {n}[{c}];' for t, n, c in kernel.shared)
     return f'''// Generated from {kernel.source.name}.
 #define DIALECT_NAMESPACE {namespace}
-#include "dialect/native/prelude.h"
+#include "dialect/native/{prelude}"
 #define RUN_NAME TOPPLE_RUN_NAME
 #define LOAD_BINDINGS {load}
 #define BINDING_PARAMETERS {parameters}
@@ -285,14 +290,40 @@ namespace {namespace} {{
 '''
 
 
-def source_cpp(kernel, words, opencl_text, namespace):
-    camel = ''.join(w.capitalize() for w in kernel.name.split('_'))
+def source_constants(kernel, words, opencl_text, prefix=''):
     bindings = ',\n    '.join(f'{{"{n}", ::topple::device::Access::{ACCESS[a]}, {SIZES[t]}}}'
                               for a, t, n in kernel.bindings)
     spv = ',\n    '.join(', '.join(f'0x{w:08x}' for w in words[i:i + 8]) for i in range(0, len(words), 8))
     # Long literals in pieces: compilers only promise 65,536 characters for one.
     pieces = '\n    '.join('R"CL(' + opencl_text[i:i + 8000] + ')CL"' for i in range(0, len(opencl_text), 8000))
+    return f'''constexpr ::topple::device::Binding {prefix}bindings[] = {{
+    {bindings}}};
+constexpr std::uint32_t {prefix}spirv[] = {{
+    {spv}}};
+constexpr const char* {prefix}opencl =
+    {pieces};
+'''
+
+
+def source_cpp(form, namespace, checked=None):
+    """form, checked: the kernel, its SPIR-V and its OpenCL C, without checks and with them."""
+    kernel = form[0]
+    camel = ''.join(w.capitalize() for w in kernel.name.split('_'))
     scope = f'{kernel.name}_scope'
+    common = f'''"{kernel.name}", {kernel.group},
+        {kernel.items['native']}, {kernel.items['opencl']}, {kernel.items['vulkan']}, {kernel.items['gpu']},
+        {str(kernel.per_group).lower()}, sizeof(Params),'''
+    constants = source_constants(*form)
+    entry = last = source = ''
+    if checked:
+        constants += source_constants(*checked, 'checked_')
+        entry = 'void run_checked(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);\n'
+        last = '        , &checked\n'
+        source = f'''    static const ::topple::device::KernelSource checked{{
+        {common} checked_bindings, checked_spirv, checked_opencl,
+        {{{scope}::run_checked, nullptr, nullptr}}
+    }};
+'''
     return f'''// Generated from {kernel.source.name}.
 #include "{kernel.name}.hpp"
 
@@ -303,29 +334,21 @@ void run_baseline(const ::topple::device::NativeArgs&, std::uint32_t, std::uint3
 void run_avx2(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);
 void run_avx512(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);
 #endif
-}}  // namespace {scope}
+{entry}}}  // namespace {scope}
 namespace {{
 
-constexpr ::topple::device::Binding bindings[] = {{
-    {bindings}}};
-constexpr std::uint32_t spirv[] = {{
-    {spv}}};
-constexpr const char* opencl =
-    {pieces};
-
+{constants}
 }}  // namespace
 
 const ::topple::device::KernelSource& {camel}::source() {{
-    static const ::topple::device::KernelSource source{{
-        "{kernel.name}", {kernel.group},
-        {kernel.items['native']}, {kernel.items['opencl']}, {kernel.items['vulkan']}, {kernel.items['gpu']},
-        {str(kernel.per_group).lower()}, sizeof(Params), bindings, spirv, opencl,
+{source}    static const ::topple::device::KernelSource source{{
+        {common} bindings, spirv, opencl,
 #ifdef TOPPLE_NATIVE_ISAS
         {{{scope}::run_baseline, {scope}::run_avx2, {scope}::run_avx512}}
 #else
         {{{scope}::run_baseline, nullptr, nullptr}}
 #endif
-    }};
+{last}    }};
     return source;
 }}
 
@@ -343,7 +366,7 @@ def main():
     parser.add_argument('out')
     for name in ('params', 'namespace', 'root'):
         parser.add_argument('--' + name, required=True)
-    for name in ('kernel', 'functions', 'glslang'):
+    for name in ('kernel', 'functions', 'glslang', 'checked'):
         parser.add_argument('--' + name)
     options = parser.parse_args()
     dialect = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'dialect')
@@ -357,21 +380,28 @@ def main():
     if not options.kernel:
         write(os.path.join(options.out, 'params.hpp'), params_header(params, options.namespace))
         return
-    common = params.quoted()
+    shared = ''
     if options.functions:
         functions = Source(options.functions, options.root)
         check_dialect(functions.name, functions.text)
-        common += '\n' + functions.quoted()
-    common += '\n'
+        shared = functions.quoted() + '\n'
+    own = params.quoted() + '\n'
+    common = own + shared
     kernel = Kernel(Source(options.kernel, options.root))
     fields = params_fields(params, kernel.params_type)
-    words = spirv(kernel, prelude('glsl', 'prelude.glsl') + common, options.glslang, options.out)
-    # The driver is given ITEMS as an option.
-    opencl_text = prelude('opencl', 'prelude.cl') + common + kernel.body('')
     at = os.path.join(options.out, kernel.name)
+    glsl, opencl = prelude('glsl', 'prelude.glsl'), prelude('opencl', 'prelude.cl')
+    words = spirv(kernel, glsl + common, options.glslang, at)
+    # The driver is given ITEMS as an option.
+    form, checked = (kernel, words, opencl + common + kernel.body('')), None
+    if options.checked:
+        cpp, cl, comp = (check_bounds.checked(kernel, shared, backend, options.checked) for backend in ('native', 'opencl', 'vulkan'))
+        words = spirv(comp, glsl + prelude('glsl', 'checks.glsl') + own, options.glslang, at + '.checked')
+        checked = (cl, words, opencl + prelude('opencl', 'checks.cl') + own + cl.body(''))
+        write(at + '.checked.cpp', native(cpp, own, options.namespace, 'checks.h'))
     write(at + '.hpp', header(kernel, fields, options.namespace))
     write(at + '.native.cpp', native(kernel, common, options.namespace))
-    write(at + '.source.cpp', source_cpp(kernel, words, opencl_text, options.namespace))
+    write(at + '.source.cpp', source_cpp(form, options.namespace, checked))
 
 
 if __name__ == '__main__':

@@ -9,7 +9,8 @@
 #
 # Whatever changes, the files, the tool or the dialect, what depends on it is made anew. Errors name the files as
 # they lie below PROJECT_SOURCE_DIR. TOPPLE_REVERSE_LANES=ON runs the lanes of the C++ form backwards, which shows
-# races between them. kernels/README.md of topple goes through it step by step.
+# races between them; TOPPLE_CHECKED_KERNELS=ON adds forms that check indices, which TOPPLE_CHECK=bounds runs.
+# kernels/README.md of topple goes through it step by step.
 function(topple_add_kernels TARGET)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "PARAMS;FUNCTIONS;NAMESPACE" "KERNELS")
   if(ARG_UNPARSED_ARGUMENTS OR NOT ARG_KERNELS OR NOT ARG_PARAMS)
@@ -46,26 +47,37 @@ function(topple_add_kernels TARGET)
   set(HEADERS ${GENERATED}/params.hpp)
   add_custom_command(OUTPUT ${HEADERS} COMMAND ${CALL} DEPENDS ${TOOL} ${ARG_PARAMS}
                      COMMENT "Parameters of the kernels of ${TARGET}" VERBATIM)
-  set(INPUTS ${TOOL} ${ARG_PARAMS} ${HOME}/dialect/glsl/prelude.glsl ${HOME}/dialect/opencl/prelude.cl)
+  set(INPUTS ${TOOL} ${HOME}/tools/check_bounds.py ${ARG_PARAMS} ${HOME}/dialect/glsl/prelude.glsl
+             ${HOME}/dialect/opencl/prelude.cl)
   if(ARG_FUNCTIONS)
     cmake_path(ABSOLUTE_PATH ARG_FUNCTIONS)
     list(APPEND CALL --functions ${ARG_FUNCTIONS})
     list(APPEND INPUTS ${ARG_FUNCTIONS})
   endif()
+  if(TOPPLE_CHECKED_KERNELS)
+    list(APPEND CALL --checked ${CMAKE_CXX_COMPILER})
+    list(APPEND INPUTS ${HOME}/dialect/glsl/checks.glsl ${HOME}/dialect/opencl/checks.cl)
+  endif()
   set(SOURCES)
   set(NATIVE_SOURCES)
+  set(CHECKED_SOURCES)
   foreach(FILE IN LISTS ARG_KERNELS)
     cmake_path(ABSOLUTE_PATH FILE)
     cmake_path(GET FILE STEM LAST_ONLY NAME)
     set(MADE ${GENERATED}/${NAME})
-    add_custom_command(OUTPUT ${MADE}.hpp ${MADE}.source.cpp ${MADE}.native.cpp
+    set(CHECKED_SOURCE)
+    if(TOPPLE_CHECKED_KERNELS)
+      set(CHECKED_SOURCE ${MADE}.checked.cpp)
+    endif()
+    add_custom_command(OUTPUT ${MADE}.hpp ${MADE}.source.cpp ${MADE}.native.cpp ${CHECKED_SOURCE}
                        COMMAND ${CALL} --kernel ${FILE} --glslang ${TOPPLE_GLSLANG}
                        DEPENDS ${FILE} ${INPUTS} COMMENT "Kernel ${NAME}" VERBATIM)
     list(APPEND HEADERS ${MADE}.hpp)
     list(APPEND SOURCES ${MADE}.source.cpp)
     list(APPEND NATIVE_SOURCES ${MADE}.native.cpp)
+    list(APPEND CHECKED_SOURCES ${CHECKED_SOURCE})
   endforeach()
-  add_custom_target(${TARGET}_kernel_sources DEPENDS ${HEADERS} ${SOURCES} ${NATIVE_SOURCES})
+  add_custom_target(${TARGET}_kernel_sources DEPENDS ${HEADERS} ${SOURCES} ${NATIVE_SOURCES} ${CHECKED_SOURCES})
   add_dependencies(${TARGET} ${TARGET}_kernel_sources)
   target_sources(${TARGET} PRIVATE ${SOURCES})
   target_include_directories(${TARGET} PUBLIC $<BUILD_INTERFACE:${GENERATED}>)
@@ -82,6 +94,9 @@ function(topple_add_kernels TARGET)
     list(APPEND ISAS avx2 avx512)
     set_property(SOURCE ${SOURCES} APPEND PROPERTY COMPILE_DEFINITIONS TOPPLE_NATIVE_ISAS)
   endif()
+  if(CHECKED_SOURCES)
+    list(APPEND ISAS checked)
+  endif()
   set_property(SOURCE ${SOURCES} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)  # each has its own text under the same name
   set(FLAGS_avx2 -march=x86-64-v3)
   # -mprefer-vector-width: the inner loops are long enough that full width pays. -mtune: generic tuning
@@ -89,6 +104,9 @@ function(topple_add_kernels TARGET)
   set(FLAGS_avx512 -march=x86-64-v4 -mtune=icelake-server -mprefer-vector-width=512)
   foreach(ISA IN LISTS ISAS)
     set(BUILT ${TARGET}_${ISA})
+    if(ISA STREQUAL "checked")  # the last one
+      set(NATIVE_SOURCES ${CHECKED_SOURCES})
+    endif()
     add_library(${BUILT} OBJECT ${NATIVE_SOURCES})
     add_dependencies(${BUILT} ${TARGET}_kernel_sources)
     set_target_properties(${BUILT} PROPERTIES UNITY_BUILD OFF POSITION_INDEPENDENT_CODE ON)

@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-PROBES = {'barrier_probe', 'bounds_probe', 'dialect_probe'}  # of the dialect and its backends: nobody waits for them
+PROBES = {'barrier_probe', 'dialect_probe'}  # of the dialect and its backends: nobody waits for them
 HEAD = {'what its work-items do (Mapping: ...)': r'\bMapping:', 'whether it is Exact or Bounded': r'\b([Ee]xact|[Bb]ounded)\b'}
 PLACES = {'an oracle in tests/oracle': ['tests/oracle/*.h'], 'a test': ['tests/kernels/*.cpp', 'tests/vdb/*.cpp', 'tests/host/*/*.cpp'],
           'a case in perf/cases': ['perf/cases/*.cpp', 'perf/kernels/*.cpp']}

@@ -6,7 +6,7 @@
 
 Configures, builds and installs topple with TOPPLE_ONLY=kernels, moves what was installed elsewhere, and builds
 docs/examples/own-kernel against it, in a copy: it runs on each form with the same bits, mistakes are told by the
-project's own lines, what changes is built anew, its test and benchmark pass and can fail, and names don't clash.
+project's own lines, indices outside at run time, what changes is built anew, its test and benchmark pass and can fail, and names don't clash.
 """
 import argparse
 import json
@@ -125,6 +125,19 @@ class Project:
         check(not built and 'my_params.h: SmoothParams.count has type double' in said, said)
         self.change('my_params.h', 'double count;', 'uint count;')
 
+    def names_accesses_outside(self):
+        """Of the project's own kernel, where it asks for that."""
+        right, wrong = 'smoothed[i] = ', 'smoothed[i + 1u] = '
+        self.configure(self.source, self.build, '-DTOPPLE_CHECKED_KERNELS=ON')
+        self.change('smooth.kernel', right, wrong)
+        built, said = self.make()
+        check(built, said)
+        for form in self.outputs():
+            done = subprocess.run([os.path.join(self.build, 'my_app'), form], env=os.environ | {'TOPPLE_CHECK': 'bounds'}, capture_output=True, text=True)
+            check(done.stderr == 'kernel smooth: work-item 99 writes smoothed[100], which has 100 elements\n', f'{form}: {done.stderr}')
+        self.change('smooth.kernel', wrong, right)
+        self.configure(self.source, self.build, '-DTOPPLE_CHECKED_KERNELS=OFF')
+
     def builds_anew(self):
         """After a change of the kernel, of its parameters or of the tool; and not else."""
         built, said = self.make()
@@ -198,6 +211,7 @@ def main():
     project.runs()
     project.sorts()
     project.tells_mistakes()
+    project.names_accesses_outside()
     project.builds_anew()
     project.configure(project.source, project.build, '-DCHECKS=ON')
     forms = project.runs()

@@ -27,9 +27,8 @@ class NativeMemory final : public Memory {
         data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
         if (!data_) {
             // Not of the kind device: that can be used, but the scan is too large for it.
-            throw Error(ErrorKind::input, "buffer " + name + ": the system has no " +
-                                              std::to_string(bytes) +
-                                              " bytes left; use a larger voxel_m (--voxel)");
+            throw OutOfMemory(ErrorKind::input, "buffer " + name + ": the system has no " +
+                                                    std::to_string(bytes) + " bytes left");
         }
     }
     ~NativeMemory() override { std::free(data_); }
@@ -78,10 +77,10 @@ class NativeDevice final : public Device {
 
     std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override {
         if (bytes > info_.limits.max_allocation_bytes) {
-            throw Error(ErrorKind::device, "buffer " + name + ": " + std::to_string(bytes) +
-                                               " bytes are more than the machine's memory of " +
-                                               std::to_string(info_.limits.memory_bytes) +
-                                               " bytes; use a larger voxel_m (--voxel)");
+            throw OutOfMemory(ErrorKind::device,
+                              "buffer " + name + ": " + std::to_string(bytes) +
+                                  " bytes are more than the machine's memory of " +
+                                  std::to_string(info_.limits.memory_bytes) + " bytes");
         }
         return std::make_unique<NativeMemory>(*this, bytes, name);
     }

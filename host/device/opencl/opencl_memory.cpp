@@ -19,9 +19,8 @@ OpenClMemory::OpenClMemory(const OpenClDevice& device, std::uint64_t bytes, cons
         const std::uint64_t padded = (bytes + opencl_tail + page - 1) / page * page;
         host_.reset(static_cast<std::byte*>(std::aligned_alloc(page, padded)));
         if (!host_) {
-            throw Error(ErrorKind::device, "buffer " + name + ": the system has no " +
-                                               std::to_string(bytes) +
-                                               " bytes left; use a larger voxel_m (--voxel)");
+            throw OutOfMemory(ErrorKind::device, "buffer " + name + ": the system has no " +
+                                                     std::to_string(bytes) + " bytes left");
         }
         flags |= CL_MEM_USE_HOST_PTR;
     }

@@ -72,6 +72,14 @@ class Carving : public testing::Test {
     const Wall* frames_ = nullptr;
 };
 
+// A device does not know of voxels.
+TEST_F(Carving, SaysHowToNeedLessMemory) {
+    const auto device = device_of(1);
+    EXPECT_THAT(
+        test::message_of([&] { stage_("carving", [&] { device->allocate(~0ull, "huge"); }); }),
+        ::testing::EndsWith(" bytes; use a larger voxel_m (--voxel)"));
+}
+
 TEST_F(Carving, GivesTheSameBesideAndAfterwards) {
     const auto one = device_of(1), two = device_of(2);
     const Observation first = input_of(std::make_unique<Wall>(40));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "topple/device.h"
+#include "topple/error.h"
 #include "topple/kernels/kernel.h"
 
 // The whole device abstraction: a Device allocates Memory and runs lists of Dispatches. The typed
@@ -33,6 +34,12 @@ struct DispatchTime;
 inline constexpr std::uint64_t slice_alignment = 512;
 
 class Device;
+
+// What allocate() throws where a buffer is larger than the device has memory for, or lends at once.
+class OutOfMemory : public Error {
+  public:
+    using Error::Error;
+};
 
 // One allocation of a device. Owned by whoever holds it; must not outlive its Device.
 class Memory {
@@ -86,7 +93,7 @@ class Device {
     Counters counters() const;
 
     // At least one byte is allocated, so that an empty array still has something to bind.
-    // Throws Error(device) naming the buffer, its size and the limit.
+    // Throws OutOfMemory, or the driver's Error(device), naming the buffer and its size.
     virtual std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) = 0;
     void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from);
     void read(Memory& from, std::uint64_t offset, std::span<std::byte> to);
@@ -108,6 +115,8 @@ class Device {
     // Records what it does from now on; TOPPLE_TRACE has every device do so.
     void record(std::shared_ptr<Trace> trace);
     Trace* trace() const { return trace_.get(); }  // null where nothing is recorded
+    // Whether kernels run in their checked forms: TOPPLE_CHECK=bounds.
+    bool checks_bounds() const { return checks_bounds_; }
 
   protected:
     // write(), read() and fill() of memory that is not in place.
@@ -128,7 +137,7 @@ class Device {
         return static_cast<Own&>(memory);
     }
     void check_own(const Memory& memory) const;
-    // Throws Error(device) where a GPU's, or its driver's, limit is below that.
+    // Throws OutOfMemory where a GPU's, or its driver's, limit is below that.
     void check_allocation(std::uint64_t bytes, const std::string& name) const;
 
     DeviceInfo info_;
@@ -145,6 +154,7 @@ class Device {
     std::unique_ptr<ThreadPool> threads_;  // made when first asked for
     std::shared_ptr<Trace> trace_;
     std::uint32_t trace_track_ = 0;  // of the dispatches
+    bool checks_bounds_;
     std::atomic<bool> in_use_{false};
 };
 

@@ -45,6 +45,8 @@ struct KernelSource {
     std::span<const std::uint32_t> spirv;
     const char* opencl;  // OpenCL C 1.2 text
     NativeEntries native;
+    // The form that checks indices (TOPPLE_CHECK=bounds), which binds one buffer more; or null.
+    const KernelSource* checked = nullptr;
 };
 
 }  // namespace topple::device
