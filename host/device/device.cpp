@@ -145,6 +145,25 @@ void Device::check_allocation(std::uint64_t bytes, const std::string& name) cons
                                                  " allocates at once, unlike the native backend");
 }
 
+void Queue::add(const KernelSource& kernel, std::uint64_t count, std::vector<BoundRange> ranges,
+                std::span<const std::byte> params) {
+    if (ranges.size() != kernel.bindings.size() || params.size() != kernel.params_bytes) {
+        throw Error(ErrorKind::usage,
+                    std::string("kernel ") + kernel.name + " takes " +
+                        std::to_string(kernel.bindings.size()) + " buffers and " +
+                        std::to_string(kernel.params_bytes) + " bytes of parameters, not " +
+                        std::to_string(ranges.size()) + " and " + std::to_string(params.size()));
+    }
+    if (count == 0) return;
+    Dispatch dispatch;
+    dispatch.kernel = &kernel;
+    dispatch.groups = groups_for(kernel, count);
+    dispatch.ranges = std::move(ranges);
+    dispatch.params.assign(params.begin(), params.end());
+    check(dispatch);
+    dispatches_.push_back(std::move(dispatch));
+}
+
 std::uint64_t Queue::groups_for(const KernelSource& kernel, std::uint64_t count) const {
     if (kernel.per_group) return count;
     const std::uint64_t per_group =

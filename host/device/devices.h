@@ -16,6 +16,9 @@ std::vector<Listing> list_native();
 std::vector<Listing> list_opencl();
 std::vector<Listing> list_vulkan();
 
+// That of the entries which native devices run: of the widest instruction set that the CPU has.
+NativeEntry best_entry(const NativeEntries& entries);
+
 // These take the best device of their backend: a GPU before a CPU, then in the driver's order.
 // Throw Error(device) where there is none that can be used.
 std::unique_ptr<Device> open_native(unsigned threads = 0);

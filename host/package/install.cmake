@@ -24,7 +24,8 @@ file(RELATIVE_PATH KERNELS_FROM_PACKAGE /prefix/${PACKAGE_FOLDER} /prefix/${KERN
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels/dialect DESTINATION ${KERNELS_FOLDER})
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/kernels/tools/build_kernels.py DESTINATION ${KERNELS_FOLDER}/tools)
 install(FILES ${PROJECT_SOURCE_DIR}/kernels/tools/check_bounds.py ${PROJECT_SOURCE_DIR}/kernels/tools/topple_add_kernels.cmake
-              ${PROJECT_SOURCE_DIR}/kernels/tools/topple_add_kernel_cases.cmake DESTINATION ${KERNELS_FOLDER}/tools)
+              ${PROJECT_SOURCE_DIR}/kernels/tools/topple_add_kernel_cases.cmake ${PROJECT_SOURCE_DIR}/kernels/tools/native_flags.txt
+        DESTINATION ${KERNELS_FOLDER}/tools)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/perf/compare DESTINATION ${CMAKE_INSTALL_DATADIR}/topple/perf)
 install(FILES ${PROJECT_SOURCE_DIR}/perf/rule.py ${PROJECT_SOURCE_DIR}/perf/side.py DESTINATION ${CMAKE_INSTALL_DATADIR}/topple/perf)
 topple_component(kernels libtopple_kernels)

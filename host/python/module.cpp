@@ -99,6 +99,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_places(module);
     bind_labels(module);
     bind_export(module);
+    bind_kernels(module);
     bind_stages(module);
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         const py::gil_scoped_release release;

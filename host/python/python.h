@@ -43,6 +43,7 @@ struct Parsed {
 };
 
 void bind_export(py::module_& module);
+void bind_kernels(py::module_& module);
 void bind_labels(py::module_& module);
 void bind_parse(py::module_& module);
 void bind_places(py::module_& module);

@@ -17,15 +17,15 @@ and without --kernel:
 FILEs are named in errors and by compilers as they lie below DIR. What is C++ stands in the namespace NAME.
 The declarations in the source (KERNEL, BUFFER_*, PARAMS, SHARED, ITEMS_PER_LANE) are the only
 binding list there is: all forms and the host's types come from it.
+
+The Python package topple.kernels takes it as a module, for kernels that are loaded at run time.
 """
-import argparse
+import copy
 import os
 import re
 import struct
 import subprocess
 import sys
-
-import check_bounds
 
 SIZES = {'float': 4, 'uint': 4, 'int': 4}
 HOST_TYPES = {'float': 'float', 'uint': 'std::uint32_t', 'int': 'std::int32_t'}
@@ -46,26 +46,64 @@ REFUSED = [
 ]
 
 
+class Refused(Exception):
+    """A kernel, or what belongs to it, is not as it must be: file, line where known, and why."""
+
+
 def fail(name, message):
-    sys.exit(f'{name}: {message}')
+    raise Refused(f'{name}: {message}')
+
+
+def prelude(*path):
+    """What a dialect's words mean in one of the languages."""
+    with open(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'dialect', *path), encoding='utf-8') as f:
+        return f.read()
 
 
 class Source:
-    """A file that is part of what compilers get: its text, and the name that they know it by."""
+    """A file that is part of what compilers get: its text, and the name that they know it by, as it lies below root;
+    its whole path where it does not, or without one."""
 
-    def __init__(self, path, root):
+    def __init__(self, path, root=None):
         with open(path, encoding='utf-8') as f:
             self.text = f.read()
-        below = os.path.relpath(os.path.abspath(path), root)
-        self.name = os.path.abspath(path) if below.startswith(os.pardir + os.sep) else below
+        whole = os.path.abspath(path)
+        below = os.path.relpath(whole, root) if root else os.pardir + os.sep
+        self.name = whole if below.startswith(os.pardir + os.sep) else below
+        if re.search('["\\\\\n\r\udc80-\udcff]', self.name):
+            fail(ascii(self.name), 'compilers can tell no name with quotes, backslashes, line breaks or what is not UTF-8')
 
     def quoted(self):
         return f'#line 1 "{self.name}"\n{self.text}'
 
 
+def without_comments(text):
+    """The same lines."""
+    return re.sub(r'//[^\n]*', '', text)
+
+
+def kernels_in(source):
+    """The kernels of a file that has several, by name: for each the file with the lines of all others empty, so that numbers of
+    lines, and what they share, stay."""
+    code = without_comments(source.text)
+    blocks = list(re.finditer(r'(?:\bITEMS_PER_LANE\([^)]*\)\s*)?\bKERNEL\(\s*(\w+).*?\b(?:END|END_GROUP)\b', code, re.S))
+    found = {}
+    for kept in blocks:
+        alone = copy.copy(source)
+        if len(blocks) > 1:
+            alone.text = code
+            for other in blocks:
+                if other is not kept:
+                    alone.text = alone.text[:other.start()] + re.sub(r'[^\n]', ' ', other[0]) + alone.text[other.end():]
+        if kept[1] in found:
+            fail(source.name, f'there are two kernels {kept[1]}')
+        found[kept[1]] = alone
+    return found
+
+
 def check_dialect(name, text):
     """Refuses, by file and line, what the compilers let pass. Comments don't count."""
-    code = re.sub(r'//[^\n]*', '', text)
+    code = without_comments(text)
     per_group = 'BEGIN_GROUP' in code
     for number, line in enumerate(code.split('\n'), 1):
         if line.lstrip().startswith('#'):
@@ -81,11 +119,12 @@ def check_dialect(name, text):
 class Kernel:
     """The declarations of one kernel file."""
 
-    def __init__(self, source):
+    def __init__(self, source, name=None):
+        """name: of the kernel, where the file is not called after it."""
         self.source = source
         path = source.name
-        code = re.sub(r'//[^\n]*', '', source.text)
-        self.name = os.path.basename(path).rsplit('.', 1)[0]
+        code = without_comments(source.text)
+        self.name = name or os.path.basename(path).rsplit('.', 1)[0]
         if self.name == 'params':
             fail(path, 'params.hpp is the header of the parameters; call the kernel otherwise')
         check_dialect(path, source.text)
@@ -94,7 +133,11 @@ class Kernel:
             fail(path, f'expected one KERNEL(name, group_size), found {len(head)}')
         if head[0][0] != self.name:
             fail(path, f'KERNEL is called {head[0][0]}, but its file {self.name}')
+        if not re.search(r'\bBEGIN\b.*\bEND\b|\bBEGIN_GROUP\b.*\bEND_GROUP\b', code, re.S):
+            fail(path, f'kernel {self.name} has no BEGIN ... END, or BEGIN_GROUP ... END_GROUP')
         self.group = int(head[0][1])
+        if not 1 <= self.group <= 1024:
+            fail(path, f'KERNEL({self.name}, {self.group}): a group has 1 to 1024 work-items')
         self.bindings = []
         for access, index, kind, name in re.findall(
                 r'\bBUFFER_(IN|OUT|INOUT)\(\s*(\d+)\s*,\s*(\w+)\s*,\s*(\w+)\s*\)', code):
@@ -110,10 +153,12 @@ class Kernel:
         self.shared = re.findall(r'\bSHARED\(\s*(\w+)\s*,\s*(\w+)\s*,\s*(\w+)\s*\)', code)
         columns = ('native', 'opencl', 'vulkan', 'gpu')
         items = re.findall(r'\bITEMS_PER_LANE\(([^)]*)\)', code)
-        numbers = [int(n) for n in items[0].split(',')] if items else [1] * len(columns)
+        numbers = items[0].split(',') if items else ['1'] * len(columns)
         if len(numbers) != len(columns):
             fail(path, f'ITEMS_PER_LANE has {len(numbers)} numbers, expected {len(columns)}: {", ".join(columns)}')
-        self.items = dict(zip(columns, numbers))
+        if not all(re.fullmatch(r'\s*[1-9]\d{0,3}\s*', n) for n in numbers):
+            fail(path, f'ITEMS_PER_LANE({items[0]}): expected whole numbers, 1 or more')
+        self.items = dict(zip(columns, map(int, numbers)))
         self.per_group = 'BEGIN_GROUP' in code
         if not self.per_group and ('BARRIER' in code or 'LANES' in code.replace('ITEMS_PER_LANE', '')):
             fail(path, 'LANES needs BEGIN_GROUP ... END_GROUP')
@@ -125,7 +170,7 @@ class Kernel:
 
 def params_fields(params, kind):
     """Fields of one parameter struct, as (type, name)."""
-    code = re.sub(r'//[^\n]*', '', params.text)
+    code = without_comments(params.text)
     found = re.search(r'STRUCT\(%s\)\s*\{(.*?)\}' % kind, code, re.S)
     if not found:
         fail(params.name, f'no STRUCT({kind})')
@@ -182,9 +227,24 @@ def call_divide(words):
     return out
 
 
-def spirv(kernel, shared_text, glslang, stem):
-    glsl = ('#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n' + shared_text
-            + kernel.body(f"layout(constant_id = 0) const int ITEMS = {kernel.items['vulkan']};\n"))
+def shared_text(params, functions=None):
+    """What stands before the kernel in each form: parameters, and functions where there are some."""
+    text = params.quoted()
+    if functions:
+        check_dialect(functions.name, functions.text)
+        text += '\n' + functions.quoted()
+    return text + '\n'
+
+
+def opencl(kernel, common, checks=''):
+    """OpenCL C text; the driver is given ITEMS as an option."""
+    return prelude('opencl', 'prelude.cl') + checks + common + kernel.body('')
+
+
+def spirv(kernel, common, glslang, stem, checks=''):
+    """The words of a kernel's SPIR-V. stem: of the names of files to work in."""
+    glsl = ('#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n' + prelude('glsl', 'prelude.glsl') + checks
+            + common + kernel.body(f"layout(constant_id = 0) const int ITEMS = {kernel.items['vulkan']};\n"))
     source = stem + '.comp'
     binary = stem + '.spv'
     with open(source, 'w', encoding='utf-8') as f:
@@ -193,7 +253,7 @@ def spirv(kernel, shared_text, glslang, stem):
                           source],
                          capture_output=True, text=True)
     if run.returncode:
-        sys.exit(f'glslang refuses {kernel.source.name}:\n{run.stdout}{run.stderr}')
+        raise Refused(f'glslang refuses {kernel.source.name}:\n{run.stdout}{run.stderr}')
     with open(binary, 'rb') as f:
         data = f.read()
     words = add_no_contraction(call_divide(list(struct.unpack('<%dI' % (len(data) // 4), data))))
@@ -362,6 +422,8 @@ def write(path, text):
 
 
 def main():
+    import argparse  # here alone: who takes this as a module has no use for it
+
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('out')
     for name in ('params', 'namespace', 'root'):
@@ -369,35 +431,24 @@ def main():
     for name in ('kernel', 'functions', 'glslang', 'checked'):
         parser.add_argument('--' + name)
     options = parser.parse_args()
-    dialect = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'dialect')
-
-    def prelude(*path):
-        with open(os.path.join(dialect, *path), encoding='utf-8') as f:
-            return f.read()
-
     os.makedirs(options.out, exist_ok=True)
     params = Source(options.params, options.root)
     if not options.kernel:
         write(os.path.join(options.out, 'params.hpp'), params_header(params, options.namespace))
         return
-    shared = ''
-    if options.functions:
-        functions = Source(options.functions, options.root)
-        check_dialect(functions.name, functions.text)
-        shared = functions.quoted() + '\n'
-    own = params.quoted() + '\n'
-    common = own + shared
+    functions = options.functions and Source(options.functions, options.root)
+    common = shared_text(params, functions)
     kernel = Kernel(Source(options.kernel, options.root))
     fields = params_fields(params, kernel.params_type)
     at = os.path.join(options.out, kernel.name)
-    glsl, opencl = prelude('glsl', 'prelude.glsl'), prelude('opencl', 'prelude.cl')
-    words = spirv(kernel, glsl + common, options.glslang, at)
-    # The driver is given ITEMS as an option.
-    form, checked = (kernel, words, opencl + common + kernel.body('')), None
+    form, checked = (kernel, spirv(kernel, common, options.glslang, at), opencl(kernel, common)), None
     if options.checked:
+        import check_bounds  # which lies beside this file
+
+        own, shared = shared_text(params), functions.quoted() + '\n' if functions else ''
         cpp, cl, comp = (check_bounds.checked(kernel, shared, backend, options.checked) for backend in ('native', 'opencl', 'vulkan'))
-        words = spirv(comp, glsl + prelude('glsl', 'checks.glsl') + own, options.glslang, at + '.checked')
-        checked = (cl, words, opencl + prelude('opencl', 'checks.cl') + own + cl.body(''))
+        checked = (cl, spirv(comp, own, options.glslang, at + '.checked', prelude('glsl', 'checks.glsl')),
+                   opencl(cl, own, prelude('opencl', 'checks.cl')))
         write(at + '.checked.cpp', native(cpp, own, options.namespace, 'checks.h'))
     write(at + '.hpp', header(kernel, fields, options.namespace))
     write(at + '.native.cpp', native(kernel, common, options.namespace))
@@ -405,4 +456,7 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    try:
+        main()
+    except Refused as refused:
+        sys.exit(str(refused))

@@ -98,10 +98,13 @@ function(topple_add_kernels TARGET)
     list(APPEND ISAS checked)
   endif()
   set_property(SOURCE ${SOURCES} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)  # each has its own text under the same name
-  set(FLAGS_avx2 -march=x86-64-v3)
-  # -mprefer-vector-width: the inner loops are long enough that full width pays. -mtune: generic tuning
-  # never gathers, for the sake of processors without AVX-512.
-  set(FLAGS_avx512 -march=x86-64-v4 -mtune=icelake-server -mprefer-vector-width=512)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${HOME}/tools/native_flags.txt)
+  file(STRINGS ${HOME}/tools/native_flags.txt LINES REGEX "^[a-z]")
+  foreach(LINE IN LISTS LINES)
+    separate_arguments(FLAGS UNIX_COMMAND ${LINE})
+    list(POP_FRONT FLAGS OF)
+    set(FLAGS_${OF} ${FLAGS})
+  endforeach()
   foreach(ISA IN LISTS ISAS)
     set(BUILT ${TARGET}_${ISA})
     if(ISA STREQUAL "checked")  # the last one
@@ -114,11 +117,7 @@ function(topple_add_kernels TARGET)
     target_link_libraries(${BUILT} PRIVATE topple::kernels)
     target_compile_definitions(${BUILT} PRIVATE TOPPLE_RUN_NAME=run_${ISA}
                                                 $<$<BOOL:${TOPPLE_REVERSE_LANES}>:TOPPLE_REVERSE_LANES>)
-    # A fused multiply-add rounds once where + and * round twice. No errno from sqrt: it would be a call in every
-    # inner loop. No steps of outer loops side by side: GCC takes that for vectors of steps, and gathers what lies
-    # in a row (disturbance_reach took four times as long).
-    target_compile_options(${BUILT} PRIVATE ${OPTIMISE} -ffp-contract=off -fno-math-errno -fno-trapping-math
-                                            $<$<CXX_COMPILER_ID:GNU>:-fno-loop-unroll-and-jam> ${FLAGS_${ISA}})
+    target_compile_options(${BUILT} PRIVATE ${OPTIMISE} ${FLAGS_all} $<$<CXX_COMPILER_ID:GNU>:${FLAGS_gcc}> ${FLAGS_${ISA}})
     target_sources(${TARGET} PRIVATE $<TARGET_OBJECTS:${BUILT}>)
     set_property(TARGET ${TARGET} APPEND PROPERTY TOPPLE_NATIVE ${BUILT})  # libraries of objects
   endforeach()

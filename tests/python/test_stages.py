@@ -12,7 +12,7 @@ import pytest
 
 import topple
 from others import Exported
-from topple import stages
+from topple import kernels, stages
 
 GRAVITY = 9.80665
 
@@ -291,7 +291,7 @@ def test_other_threads_run_during_a_stage_and_a_device_serves_one(device):
     assert ticks > 5 and refused and 'the device is in use by another parse or stage' in refused[0]
 
 
-@pytest.mark.parametrize('module, name', [(topple, '__init__'), (stages, 'stages')])
+@pytest.mark.parametrize('module, name', [(topple, '__init__'), (kernels, 'kernels'), (stages, 'stages')])
 def test_the_stubs_have_the_signatures_that_there_are(module, name):
     tree = ast.parse(open(os.path.join(os.path.dirname(topple.__file__), name + '.pyi'), encoding='utf-8').read())
 

@@ -38,21 +38,6 @@ class NativeMemory final : public Memory {
     std::byte* data_;
 };
 
-NativeEntry best_entry(const NativeEntries& entries) {
-#if defined(__x86_64__)
-    if (entries.avx512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512cd")) {
-        return entries.avx512;
-    }
-    if (entries.avx2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-        __builtin_cpu_supports("bmi2")) {
-        return entries.avx2;
-    }
-#endif
-    return entries.baseline;
-}
-
 std::string cpu_name() {
     std::ifstream cpuinfo("/proc/cpuinfo");
     for (std::string line; std::getline(cpuinfo, line);) {
@@ -131,6 +116,21 @@ class NativeDevice final : public Device {
 };
 
 }  // namespace
+
+NativeEntry best_entry(const NativeEntries& entries) {
+#if defined(__x86_64__)
+    if (entries.avx512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512cd")) {
+        return entries.avx512;
+    }
+    if (entries.avx2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+        __builtin_cpu_supports("bmi2")) {
+        return entries.avx2;
+    }
+#endif
+    return entries.baseline;
+}
 
 std::unique_ptr<Device> open_native(unsigned threads) {
     if (threads > ThreadPool::most_threads) {

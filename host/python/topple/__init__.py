@@ -20,7 +20,7 @@ from typing import NamedTuple
 from . import _interpreter  # before what it keeps out of other interpreters
 import numpy as np
 
-from . import _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, plot, stages
+from . import _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, kernels, plot, stages
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
 from ._frames import Frames as _Frames
@@ -32,7 +32,7 @@ from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
 __all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'RemovalOrder', 'Result',
-           'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
+           'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()
 for _kind in _snapshot.ITEMS:  # of a live result: a plain item that stands alone comes back

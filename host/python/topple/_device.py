@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Opening a device."""
 from . import _topple
+from ._arrays import usage
 from ._options import option
 
 
@@ -11,3 +12,12 @@ def open_device(backend='auto', threads=0):
     if not isinstance(backend, str):
         raise TypeError(f'open_device: backend: expected "auto", "native", "opencl" or "vulkan", not {backend!r}'[:300])
     return _topple.open_device(backend, option('threads', threads))
+
+
+def opened(device):
+    """What a call is given as its device, open: a Device, or a backend's name, or None for the best."""
+    if device is None or isinstance(device, str):
+        return _topple.open_device('auto' if device is None else device)
+    if not isinstance(device, _topple.Device):
+        raise usage(f"device: expected one of topple.open_device() or a backend's name, not {device!r}")
+    return device

@@ -23,8 +23,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ._arrays import as_array, columns, exactly, fields, has_rows, number, usage, warn
+from ._device import opened as _opened
 from ._shown import figure
-from ._topple import Device, open_device
 from ._topple import stages as _stages
 
 __all__ = ['Barrier', 'Intrinsics', 'StandingBody', 'State', 'Volume', 'Voxels', 'barriers', 'convolve', 'footprint_dtype',
@@ -74,14 +74,6 @@ class Barrier(NamedTuple):
     release_J: float  # what it then can release
     direction: list  # horizontal way that it goes, unit; zeros: any
     curve: np.ndarray  # (steps, 2) float64: S(W), W_J and S_J of each step; none where no pose lies lower
-
-
-def _opened(device):
-    if device is None or isinstance(device, str):
-        return open_device('auto' if device is None else device)
-    if not isinstance(device, Device):
-        raise usage(f"device: expected one of topple.open_device() or a backend's name, not {device!r}")
-    return device
 
 
 def _points(source, name='points'):

@@ -155,7 +155,7 @@ FN T shared_max_(volatile T& place, std::type_identity_t<T> value) {
 }
 template <int items, class T>
 FN void load_near_(T (&to)[items], const T* from, const int (&place)[items]) {
-#ifdef __AVX512F__
+#if defined(__AVX512F__) && !defined(__clang__)  // which has not the builtin, here and below
     if constexpr (items == 16) {
         typedef T Words __attribute__((vector_size(64)));
         typedef int Places __attribute__((vector_size(64)));
@@ -172,12 +172,12 @@ FN void load_near_(T (&to)[items], const T* from, const int (&place)[items]) {
     for (int i = 0; i < items; i++) to[i] = from[place[i]];
 }
 FN void store_line_(uint* to, const uint* from) {
-#ifdef __AVX512F__
+#if defined(__AVX512F__) && !defined(__clang__)
     typedef long long Line __attribute__((vector_size(64)));
     Line line;
     std::memcpy(&line, from, sizeof(line));
     __builtin_ia32_movntdq512(reinterpret_cast<Line*>(to), line);
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) && !defined(__clang__)
     typedef long long Half __attribute__((vector_size(32)));
     for (int k = 0; k < 16; k += 8) {
         Half half;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "topple/kernels/buffer.h"
 
@@ -26,15 +29,16 @@ class Queue {
         static_assert(sizeof(typename K::Params) <= 128 &&
                       std::is_trivially_copyable_v<typename K::Params>);
         if (count == 0) return;
-        Dispatch dispatch;
-        dispatch.kernel = &K::source();
-        dispatch.groups = groups_for(*dispatch.kernel, count);
-        K::bind(args, dispatch.ranges);
-        const auto* bytes = reinterpret_cast<const std::byte*>(&params);
-        dispatch.params.assign(bytes, bytes + sizeof(params));
-        check(dispatch);
-        dispatches_.push_back(std::move(dispatch));
+        std::vector<BoundRange> ranges;
+        K::bind(args, ranges);
+        add(K::source(), count, std::move(ranges), std::as_bytes(std::span(&params, 1)));
     }
+
+    // The same of a kernel that is known at run time only: a range for each binding, in order,
+    // and the parameters as they lie in memory. Throws Error(usage) where there are more or fewer
+    // than the kernel has.
+    void add(const KernelSource& kernel, std::uint64_t count, std::vector<BoundRange> ranges,
+             std::span<const std::byte> params);
 
     // Runs what was added since the last run, in order, and waits.
     void run();
