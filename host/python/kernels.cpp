@@ -75,13 +75,14 @@ std::unique_ptr<MadeKernel, py::nodelete> make_kernel(
 }
 
 // The memory of an array without gaps. The Python side has checked types, and says it better.
+// NumPy 2 lays descriptions out anew, which pybind11 before 2.12 does not know: NumPy is asked.
 std::span<std::byte> bytes_of(const py::array& array, const device::Binding& binding) {
     const bool fits = (array.flags() & py::array::c_style) &&
-                      array.itemsize() == binding.element_bytes &&
+                      array.attr("itemsize").cast<std::uint32_t>() == binding.element_bytes &&
                       (binding.access == device::Access::read || array.writeable());
     if (!fits) throw Error(ErrorKind::usage, std::string(binding.name) + " is no such array");
     return {static_cast<std::byte*>(const_cast<void*>(array.data())),
-            static_cast<std::size_t>(array.nbytes())};
+            array.attr("nbytes").cast<std::size_t>()};
 }
 
 // Runs the kernel once. All arrays are sent, those that are only written to as well: the elements
