@@ -269,7 +269,8 @@ inline constexpr auto kind<Object> = described(
           "the larger object that it is likelier than not a piece of; -1: none",
           Note{.since = "piece_of", .rule = Rule::objects_or_none}, &topple_object::piece_of),
     field("piece_probability", &Object::piece_probability,
-          "of the likeliest of its cut joints to larger objects, 0 to 1; 0: it has none",
+          "that it is a piece of the likeliest larger object that it touches, 0 to 1; 0: there is "
+          "none",
           Note{.since = "piece_of"}, &topple_object::piece_probability),
     field("joint_probability", &Object::joint_probability,
           "of the least likely joint at which two parts of it meet, 0 to 1. Below 0.6 it may be "

@@ -12,12 +12,12 @@
 
 namespace topple::graph {
 
-// Of an object the likeliest joint to a larger one that grouping left apart from it: the
-// probability that it is no whole but a piece, half of a desk, say, or a shelf of a cupboard. A
-// smaller one would change little of what is said of it.
+// Of an object the likeliest larger one that it is a piece of, half of a desk, say, or a shelf of a
+// cupboard, though grouping left them apart. A smaller one would change little of what is said of
+// it.
 struct PieceOf {
     double probability = 0;
-    std::int32_t primitive = -1;  // the other's
+    std::int32_t primitive = -1;  // the other's, of the likeliest joint between both
 };
 
 // Of an object the joint that it hangs together by: of all where two larger parts of it meet, the

@@ -67,8 +67,7 @@ std::vector<Wanted> next_round(std::vector<Wanted>& wanted, std::size_t objects)
     std::vector<bool> taken(objects);
     for (Wanted& w : wanted) {
         const auto wants = [&](ObjectId o) { return o >= 0 && taken[o.place()]; };
-        const bool now =
-            w.bodies.empty() || (!wants(w.reading.object) && !wants(w.reading.with));
+        const bool now = w.bodies.empty() || (!wants(w.reading.object) && !wants(w.reading.with));
         if (now && !w.bodies.empty()) {
             taken[w.reading.object.place()] = true;
             if (w.reading.with >= 0) taken[w.reading.with.place()] = true;
@@ -107,7 +106,7 @@ void find_bodies(device::Device& device, const physics::PartHulls& hulls, const 
         physics::inertia_of_objects(stage.masses.moments, stage.bodies, object_of, density);
     for (std::size_t o = 0; o < bodies.size(); ++o) bodies[o].inertia = inertia[o];
     find_barriers(device, hulls, solids, stage.hidden_walls, object_of, friction, bodies,
-                  unseen_of(parts));
+                  unseen_of(parts), false);
     std::size_t next = 1;
     for (Wanted& w : round) {
         if (w.bodies.empty()) continue;
@@ -122,10 +121,10 @@ void find_bodies(device::Device& device, const physics::PartHulls& hulls, const 
 }  // namespace
 
 std::vector<OtherReading> find_alternatives(device::Device& device, const physics::PartHulls& hulls,
-                                           const SolidParts& parts, const BodyMaker& maker,
-                                           std::span<const graph::Joint> joints,
-                                           const graph::KnownLinks& links, double friction,
-                                           const ObjectStage& stage) {
+                                            const SolidParts& parts, const BodyMaker& maker,
+                                            std::span<const graph::Joint> joints,
+                                            const graph::KnownLinks& links, double friction,
+                                            const ObjectStage& stage) {
     std::vector<Wanted> left = wanted(joints, links, stage);
     std::vector<OtherReading> out;
     while (!left.empty()) {

@@ -13,9 +13,9 @@ namespace topple {
 // of, and as the two that it may be. Only that one object is another then, and it weighs what its
 // primitives weigh as they were read. By object, the likelier reading first.
 std::vector<OtherReading> find_alternatives(device::Device& device, const physics::PartHulls& hulls,
-                                           const SolidParts& parts, const BodyMaker& maker,
-                                           std::span<const graph::Joint> joints,
-                                           const graph::KnownLinks& links, double friction,
-                                           const ObjectStage& stage);
+                                            const SolidParts& parts, const BodyMaker& maker,
+                                            std::span<const graph::Joint> joints,
+                                            const graph::KnownLinks& links, double friction,
+                                            const ObjectStage& stage);
 
 }  // namespace topple

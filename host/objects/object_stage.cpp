@@ -155,7 +155,8 @@ Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId
 
 void find_barriers(device::Device& device, const physics::PartHulls& parts,
                    const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
-                   double friction, std::vector<Body>& objects, const Unseen& unseen) {
+                   double friction, std::vector<Body>& objects, const Unseen& unseen,
+                   bool landscapes) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
     const std::vector<ObjectBox> boxes = object_boxes(solids, object_of, objects.size());
@@ -191,7 +192,7 @@ void find_barriers(device::Device& device, const physics::PartHulls& parts,
     const std::vector<double> all_friction(candidates.size(), friction);
     std::vector<physics::SlideResult> sliding =
         physics::slide_all(cells, object_of, bodies, all_friction,
-                           {.places = true,
+                           {.places = landscapes,
                             .stances = stances,
                             .ways = safety::directions(),
                             .threads = &device.threads(),
@@ -227,8 +228,9 @@ void find_barriers(device::Device& device, const physics::PartHulls& parts,
         if (!candidates[o].support_polygon.empty())
             objects[o].toppling = std::make_shared<physics::Toppling>(
                 toppling_of(objects[o], objects[o].tipping, friction));
-        objects[o].poses =
-            physics::body_landscape(hulls[o], candidates[o], objects[o].tipping.ways);
+        if (landscapes)
+            objects[o].poses =
+                physics::body_landscape(hulls[o], candidates[o], objects[o].tipping.ways);
     });
 }
 

@@ -107,11 +107,12 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
 Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId, Body> objects);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
-// their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
-// falls, and so do walls behind what hides them.
+// their edges, tipping, sliding, both together, boxes, and their landscapes if asked for. What is
+// grounded stops what falls, and so do walls behind what hides them.
 void find_barriers(device::Device& device, const physics::PartHulls& parts,
                    const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
-                   double friction, std::vector<Body>& objects, const Unseen& unseen = {});
+                   double friction, std::vector<Body>& objects, const Unseen& unseen = {},
+                   bool landscapes = true);
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

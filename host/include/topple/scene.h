@@ -204,8 +204,8 @@ struct Object {
     Vec3 box_middle_m{std::numeric_limits<double>::quiet_NaN(),
                       std::numeric_limits<double>::quiet_NaN(),
                       std::numeric_limits<double>::quiet_NaN()};
-    // The larger object that it is likelier than not a piece of, by a joint that grouping left
-    // apart; -1: none. And how likely the likeliest of its joints to larger objects is; 0: none.
+    // The larger object that it is likelier than not a piece of, though grouping left them apart;
+    // -1: none. And how likely it is a piece of the likeliest one; 0: there is none.
     std::int32_t piece_of = -1;
     double piece_probability = 0;
     // The least likely joint at which two parts of it meet (each a twentieth of what of it was

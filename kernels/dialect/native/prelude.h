@@ -92,8 +92,8 @@ using Bound_ = ::topple::device::NativeArgs;
     ::DIALECT_NAMESPACE::load_near_<ITEMS>(to, (from) + (base), place);
 
 // They go past the caches, where the processor can, and LINES_STORED waits for them.
-#define STORE_LINE(to, at, from, base) ::topple::kernels::store_line_((to) + (at), (from) + (base));
-#define LINES_STORED ::topple::kernels::lines_stored_();
+#define STORE_LINE(to, at, from, base) ::DIALECT_NAMESPACE::store_line_((to) + (at), (from) + (base));
+#define LINES_STORED ::DIALECT_NAMESPACE::lines_stored_();
 
 #define GLOBAL_ID global_id_
 #define LOCAL_ID local_id_
