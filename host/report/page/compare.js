@@ -115,7 +115,7 @@ function outcome(scene, other, row, risk, first, match) {
 function becameText({verdict: became, text}) {
   if (['joined', 'now part', 'parted', 'not there', 'gone', 'new'].includes(became)) return [became, text].filter(part => part).join(' ');
   if (became === 'fixed now' && text) return `${became}, ${text}`;
-  const words = {alike: 'as before', unknown: 'not known', 'not told apart': 'too uncertain to say'}[became] || became;
+  const words = {alike: 'as before', unknown: 'not known', 'not told apart': 'unsure'}[became] || became;
   return words + (text ? `: ${text}` : '');
 }
 
@@ -165,7 +165,7 @@ class ComparePanel {
     const line = strangersText(rows, sameScan);
     const always = sameScan ? ['safer', 'less safe', 'alike'] : ['safer', 'less safe', 'alike', 'moved', 'new', 'gone'];
     const counts = [...always, ...verdicts.filter(what => !always.includes(what) && count(what))].map(what =>
-      `${count(what)} ${{alike: 'as before within the errors', unknown: 'not known', 'not told apart': 'too uncertain to say', 'now part': 'now part of others'}[what] || what}`).join(', ') + '.';
+      `${count(what)} ${{alike: 'as before within the errors', unknown: 'not known', 'not told apart': 'unsure', 'now part': 'now part of others'}[what] || what}`).join(', ') + '.';
     const risk = side => !side ? '\u2013' : side.unknown ? 'not known' : number(side.risk) + within(side.error);
     const category = side => !side ? '\u2013' : side.categoryText;
     const body = rows.map(row => {
@@ -187,7 +187,7 @@ class ComparePanel {
     this.out.replaceChildren(banner, ...stranger, element('p', {className: 'counts', text: counts}),
       element('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': 'Objects of both parses'}, [
         element('table', {}, [element('thead', {}, [element('tr', {}, head)]), element('tbody', {}, body)])]),
-      element('p', {className: 'hint', text: `${how}Risk is the largest of ${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none, and too uncertain to say where these ` +
+      element('p', {className: 'hint', text: `${how}Risk is the largest of ${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none, and unsure where these ` +
         `exceed the risks or the category is another. Objects have the colours of ${this.name} now, whose numbers are beside theirs.`}));
     this.say(line + counts);
     this.takeColours(rows);

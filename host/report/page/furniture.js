@@ -56,13 +56,12 @@ function furnitureText(scene, {box, size_m: size}) {
 function fillFurniture(panel, scene, tick) {
   const found = listedPieces(scene);
   if (!scene.objects.some(object => object.grounded)) return;
-  // A photo shows no grey.
-  const where = scene.coloured ? 'in the colours by object' : 'in the view';
-  panel.append(element('h3', {text: `Not judged: what is grey ${where}`}), element('p', {className: 'hint', text:
-    'Grey is counted as the building, or as fixed to it. If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.' +
-    (found.length ? ` ${found.length === 1 ? 'This stands' : 'These stand'} before a wall, and may be furniture:` : '')}));
+  const group = cardGroup(`Counted as the building${found.length ? ` (${found.length} may be furniture)` : ''}`, [element('p', {className: 'hint', text:
+    'What is palest in the view is not judged: it is counted as the building, or as fixed to it. If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.' +
+    (found.length ? ` ${found.length === 1 ? 'This stands' : 'These stand'} before a wall, and may be furniture:` : '')})]);
+  panel.append(group);
   if (!found.length) return;
-  panel.append(element('ul', {className: 'furniture'}, found.slice(0, listedFurniture).map(one => element('li', {}, [element('strong', {text: `${one.letter}: `}), `${furnitureText(scene, one)} `,
+  group.append(element('ul', {className: 'furniture'}, found.slice(0, listedFurniture).map(one => element('li', {}, [element('strong', {text: `${one.letter}: `}), `${furnitureText(scene, one)} `,
     element('button', {type: 'button', text: one.parts.length > 1 ? `tick its ${one.parts.length} parts` : 'tick it', onclick: () => tick(one.parts, one.box)})]))),
   ...found.length > listedFurniture ? [element('p', {className: 'hint', text: `And ${found.length - listedFurniture} smaller.`})] : []);
 }

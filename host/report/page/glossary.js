@@ -18,7 +18,7 @@ const glossary = {
   risk: ['risk', 'The chance that one event upsets the object, times the energy that it then releases: joules to be expected per event.'],
   unsafety: ['unsafety', 'The risk as a mark from 1 to 10 within this scene: 10 is the largest risk that is here, even where that is harmless. It orders; act by the category.'],
   category: ['category', 'How unsafe an object is by itself, whatever else is in the scene: none, low, medium or high, by how likely ' +
-    'one event makes it fall and how hard it then lands, at the worse end of the errors. With a ? the better end says less. Act by it.'],
+    'one event makes it fall and how hard it then lands, at the worse end of the errors. Unsure: the better end says less. Act by it.'],
   advice: ['advice', 'What would bring the risk below what is tolerated. Where the category is none there is no need to act, whatever the risk.'],
   overturning: ['overturning', 'Tipping over an edge of the foot, once the centre of mass is beyond it.'],
   pose: ['pose', 'A way to stand or lie at rest. Between two poses lies a pass: the lowest that a body must be lifted to go from one to the other.'],
@@ -31,13 +31,12 @@ const glossary = {
 // The words of a term as a link to where it is explained; hovering says it at once.
 function term(key, text) {
   return element('a', {className: 'term', href: '#word-' + key, title: glossary[key][1], text: text || glossary[key][0],
-    onclick: () => { document.getElementById('glossary').open = true; }});
+    onclick: () => { document.getElementById('about').open = true; }});
 }
 
 function fillGlossary() {
-  const list = element('dl', {});
+  const list = document.getElementById('glossary');
   for (const [key, [word, meaning]] of Object.entries(glossary)) {
     list.append(element('dt', {id: 'word-' + key, text: word, tabIndex: -1}), element('dd', {text: meaning}));
   }
-  document.getElementById('glossary').append(list, element('p', {text: 'More words are in docs/how-it-works.md of topple.'}));
 }

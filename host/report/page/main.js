@@ -6,10 +6,8 @@ window.addEventListener('error', event => { document.body.dataset.error = event.
 
 function fillHeader(scene) {
   document.getElementById('title').textContent = scene.title || 'scene';
-  const loose = scene.objects.filter(object => !object.grounded).length;
-  document.getElementById('summary').textContent =
-    (scene.made ? `${scene.made}. ` : '') + `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the building with all that is fixed to it' : '') +
-    '.';
+  document.getElementById('headline').textContent = headlineOf(scene);
+  document.getElementById('believe').append(...believeTexts(scene).flatMap(text => paragraph('warning', text)));
   sayIn('verification', scene.verified ? verifiedText(scene.verified) : '');
   const up = {
     given: 'given by the user', manhattan: 'from the room\u2019s three main directions',
@@ -17,6 +15,8 @@ function fillHeader(scene) {
   };
   const facts = [
     ['scan', scene.source],
+    ...scene.made ? [['made', scene.made]] : [],
+    ['things that can move', String(scene.objects.filter(object => !object.grounded).length)],
     ['parts', scene.primitives.length.toLocaleString('en')],
     ['topple', scene.topple_version],
     ['backend', scene.backend + (scene.device ? ' (' + scene.device + ')' : '')],
@@ -46,10 +46,12 @@ function fillBottom(scene) {
   };
   put('timings', 'timings-panel', Object.keys(scene.timings_s).length ? timingBars(scene.timings_s) : null);
   put('energy', 'energy-panel', energyChart(scene.swc_energy));
-  const notes = document.getElementById('notes');
-  for (const note of scene.notes) notes.append(element('li', {text: note}));
-  notes.parentElement.classList.toggle('warning', nothingJudged(scene));
-  if (!scene.notes.length) document.getElementById('notes-panel').hidden = true;
+  const notes = [...missingTexts(scene), ...scene.notes], about = `About this scan${notes.length ? ` (${plural(notes.length, 'note')})` : ''}`;
+  document.getElementById('notes').append(...notes.map(text => element('li', {text})));
+  for (const id of ['to-about', 'about-heading']) document.getElementById(id).textContent = about;
+  document.getElementById('to-about').addEventListener('click', () => { document.getElementById('about').open = true; });
+  document.getElementById('objects-heading').textContent = `All ${plural(scene.objects.length, 'object')}, in a table`;
+  fillHow(document.getElementById('how'), scene);
   document.getElementById('table-note').textContent =
     'Click a heading to sort. Where: as on the plan, and how high above ' + (scene.floor.known ? 'the floor' : 'the lowest that was scanned') + '. Barrier: the least energy that moves an object; release: what it sets free when its largest risk comes true. ' +
     'For each disturbance: joules expected per event, \u00b1 one standard error, of the sampling of events and of what is not known of barrier and mass (not of what the grouping may have got wrong), and how often an event upsets the object.';
@@ -62,17 +64,14 @@ function fillTold(scene, parts) {
   document.getElementById('told').hidden = !lines.length;
 }
 
-// One button of a group is pressed at a time.
+// One button of a group is pressed at a time. Returns what presses another one.
 function radioGroup(id, value, change) {
   const buttons = [...document.querySelectorAll('#' + id + ' button')];
   const press = chosen => buttons.forEach(b => b.setAttribute('aria-pressed', String(b.dataset.value === chosen)));
-  for (const button of buttons) {
-    button.addEventListener('click', () => {
-      press(button.dataset.value);
-      change(button.dataset.value);
-    });
-  }
+  const take = chosen => { press(chosen); change(chosen); };
+  for (const button of buttons) button.addEventListener('click', () => take(button.dataset.value));
   press(value);
+  return take;
 }
 
 const markerTexts = {middle: 'centre of mass', edge: 'edge it turns over or leaves', lands: 'where it lands', move: 'where to move it'};
@@ -84,9 +83,8 @@ function legend(scene, state, view) {
   const ends = (low, high) => element('div', {className: 'ends'}, [element('span', {text: low}), element('span', {text: high})]);
   if (state.mode === 'risk') {
     const line = (category, text) => element('div', {}, [colourSwatch(categoryColour(scene, category)), text]);
-    box.append(element('div', {text: 'Category'}), ...[...categories].reverse().map(category => line(category, category)));
-    const unknown = scene.objects.find(object => !object.grounded && !object.unsafety_category);
-    if (unknown) box.append(line('', `not known: ${noCategoryText(unknown)}`));
+    box.append(element('div', {className: 'keys'}, [...[...categories].reverse().map(category => line(category, `${category}${category === 'high' ? ' risk' : ''}`)),
+      ...scene.objects.some(object => !object.grounded && !object.unsafety_category) ? [line('', 'not judged')] : []]));
   }
   if (state.fieldsOn.includes('walks')) {
     box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));
@@ -158,7 +156,7 @@ function showStill(scene) {
   const still = element('canvas', {width: 960, height: 600, role: 'img', className: 'still'});
   const sides = [['from the south-west', 0], ['from the south-east', 90], ['from the north-east', 180], ['from the north-west', -90]];
   const show = side => {
-    paintScene(scene, still, scene.coloured ? 'photo' : 'object', sides[side][1]);
+    paintScene(scene, still, 'risk', sides[side][1]);
     still.setAttribute('aria-label', `The scene ${sides[side][0]}`);
   };
   const box = element('div', {className: 'group', id: 'sides', role: 'group', 'aria-label': 'Seen from'},
@@ -233,8 +231,10 @@ function setLink(id) {
 function preparePrint(scene, state, plan, parts) {
   document.getElementById('print').addEventListener('click', () => print());
   addEventListener('beforeprint', () => {
-    // Paper has no tooltips.
-    for (const folded of document.querySelectorAll('#glossary, #risk details')) folded.open = true;
+    // Paper can't unfold.
+    const folded = [...document.querySelectorAll('main details:not([open], #mend)')];
+    for (const details of folded) details.open = true;
+    addEventListener('afterprint', () => folded.forEach(details => { details.open = false; }), {once: true});
     fillSheet(scene);
     fillTold(scene, parts);
     paintPictures(scene, true);
@@ -263,14 +263,15 @@ async function start() {
   sayThinned(scene);
   const view = openView(scene);
   const panel = document.getElementById('detail');
-  const state = {mode: scene.coloured ? 'photo' : 'object', chosen: null, fieldsOn: []};
+  const state = {mode: 'risk', chosen: null, fieldsOn: []};
+  const mend = document.getElementById('mend');
   const say = text => { document.getElementById('say').textContent = text; };
   const repaint = () => {
     if (!view) return;
     view.paint(state.mode, state.chosen, parts.marked);
     legend(scene, state, view);
   };
-  const parts = new PartsPanel(scene, repaint, say);
+  const parts = new PartsPanel(scene, () => { mend.open = mend.open || parts.marked.size > 0; repaint(); }, say);
   const on = {
     // Another one while this one stays chosen: the view labels both.
     show: (id, other) => {
@@ -281,6 +282,7 @@ async function start() {
     },
     join: (id, other) => {
       parts.join(id, other);
+      mend.open = true;
       document.getElementById('mend-result').scrollIntoView({block: 'nearest'});
     },
     joined: (id, other) => !!parts.joinOf(id, other),
@@ -315,7 +317,7 @@ async function start() {
   fillFurniture(document.getElementById('risk'), scene, (ids, box) => {
     parts.take(ids);
     if (view) view.fly(box);
-    document.getElementById('mend').scrollIntoView({block: 'nearest'});
+    mend.scrollIntoView({block: 'nearest'});
   });
   const plan = new Plan(document.getElementById('plan'), scene, visit);
   const recolour = () => {
@@ -329,7 +331,9 @@ async function start() {
 
   if (view) {
     if (!scene.coloured) document.querySelector('#colour-by [data-value=photo]').remove();
-    radioGroup('colour-by', state.mode, mode => { state.mode = mode; repaint(); });
+    const colourBy = radioGroup('colour-by', state.mode, mode => { state.mode = mode; repaint(); });
+    // Whoever puts something right must see what is one object.
+    mend.addEventListener('toggle', () => { if (state.mode === (mend.open ? 'risk' : 'object')) colourBy(mend.open ? 'object' : 'risk'); });
     const hasSolids = scene.view.surface.count + scene.view.voxels.count > 0;
     radioGroup('show', hasSolids ? 'solids' : 'points', what => view.setShow(what));
     view.setShow(hasSolids ? 'solids' : 'points');

@@ -178,12 +178,12 @@ class Marker {
   }
 }
 
-// The numbers of the riskiest objects, or of the chosen one and of what it may be a piece of, where they stand in the view.
+// The numbers of what to act on and to look at, or of the chosen one and of what it may be a piece of, where they stand in the view.
 class Labels {
   constructor(container, scene) {
     this.container = container;
     this.scene = scene;
-    this.risky = riskiest(scene);
+    this.risky = numberedOnes(scene);
     this.nodes = new Map();
     this.seen = null;  // how many places of the view each object covers, once that is known
     this.choose(undefined);

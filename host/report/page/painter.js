@@ -213,11 +213,16 @@ function byObject(scene, also, of = object => objectColour(scene, object.id)) {
   };
 }
 
-// As a data URL: the object in colour, what is around it pale.
+function byRisk(scene) {
+  return byObject(scene, null, object => categoryColour(scene, object.unsafety_category));
+}
+
+// As a data URL: the object in its category's colour, where it has one above none, what is around it grey.
 function objectPicture(scene, id) {
+  const category = scene.objectById.get(id).unsafety_category, colour = !category || category === 'none' ? objectColour(scene, id) : categoryColour(scene, category);
   const {low, high} = scene.boxes.get(id), margin = Math.max(0.25 * Math.hypot(...extentOf({low, high})), 0.02);
   const box = {low: low.map(value => value - margin), high: high.map(value => value + margin)};
-  const {canvas} = scene.painter.picture(box, {...pictureSize, chosen: id, colourOf: byObject(scene, id), own: scene.coloured});
+  const {canvas} = scene.painter.picture(box, {...pictureSize, chosen: id, colourOf: byObject(scene, id, object => object.id === id ? colour : groundColour), own: scene.coloured});
   const context = canvas.getContext('2d');
   context.globalCompositeOperation = 'destination-over';  // JPEG knows no transparency
   context.fillStyle = '#e9edf1';
@@ -225,10 +230,10 @@ function objectPicture(scene, id) {
   return canvas.toDataURL('image/jpeg', 0.85);
 }
 
-// The whole scene as a picture, with the numbers of the riskiest objects and the letters of what may be furniture; where there is no WebGL, and on paper.
+// The whole scene as a picture, with the numbers of what to act on and to look at, and the letters of what may be furniture; where there is no WebGL, and on paper.
 function paintScene(scene, canvas, mode, turn) {
   const {width, height} = canvas;
-  const colours = byObject(scene, null, mode === 'risk' ? object => categoryColour(scene, object.unsafety_category) : undefined);
+  const colours = mode === 'risk' ? byRisk(scene) : byObject(scene, null);
   const picture = scene.painter.picture(scene.boxes.get(null), {width, height, chosen: null, colourOf: colours, own: mode === 'photo', turn});
   const context = canvas.getContext('2d');
   context.clearRect(0, 0, width, height);
@@ -242,6 +247,6 @@ function paintScene(scene, canvas, mode, turn) {
     context.strokeText(text, x, y);
     context.fillText(text, x, y);
   };
-  for (const object of riskiest(scene).filter(one => one.center_of_mass_m.every(value => value !== null))) say(object.name || String(object.id), viewPlace(scene, object.center_of_mass_m));
+  for (const object of numberedOnes(scene).filter(one => one.center_of_mass_m.every(value => value !== null))) say(object.name || String(object.id), viewPlace(scene, object.center_of_mass_m));
   for (const one of listedPieces(scene)) if (one.letter) say(one.letter, middleOf(one.box));
 }

@@ -293,7 +293,7 @@ class PartsPanel {
     document.getElementById('mend-list-heading').textContent = plural(list.length, 'correction');
     document.getElementById('mend-command').textContent = this.corrections.command();
     for (const button of document.querySelectorAll('button[data-join]'))
-      button.textContent = joinText(this.scene, Number(button.dataset.join), this.joinOf(Number(button.dataset.of), Number(button.dataset.join)));
+      button.textContent = joinText(this.joinOf(Number(button.dataset.of), Number(button.dataset.join)));
   }
 }
 

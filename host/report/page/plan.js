@@ -7,14 +7,13 @@ class Plan {
     this.panel = panel;
     this.scene = scene;
     this.visit = visit;
-    this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts), ...tallOnes(scene).slice(0, listedDoubts), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
+    this.shown = [...numberedOnes(scene), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
       .filter(object => planPlace(scene, object));
     const {low, high} = scene.planBox;
     this.size = [high[0] - low[0], high[1] - low[1]];
     panel.hidden = !(this.size[0] > 0 && this.size[1] > 0) || !drawnRecords(scene.view).count;
-    document.getElementById('plan-note').textContent = 'Seen from above, in metres from the south-west corner. North is one of the room\u2019s own ' +
-      'directions, as in the view; not the earth\u2019s. ' + (this.shown.length ? 'Numbers are those of the objects listed, coloured by category; with a ? where the scan does not show what holds them.' : '') +
-      (listedPieces(scene).length ? ' Letters are pieces of the building that may be furniture.' : '');
+    document.getElementById('plan-note').textContent = 'In metres from the south-west corner; north is the room\u2019s own.' +
+      (this.shown.some(object => object.seen_enough === false) ? ' ?: not judged.' : '') + (listedPieces(scene).length ? ' Letters: the building, or furniture.' : '');
   }
 
   paint() {
@@ -79,7 +78,7 @@ class Plan {
   // As a data URL; null where there are no solids to draw.
   picture(width, height) {
     const {scene} = this, camera = (box, fineWidth, fineHeight) => planCamera(scene.planBox, fineWidth, fineHeight);
-    const made = scene.painter.picture(scene.planBox, {width, height, chosen: null, colourOf: byObject(scene, null), own: scene.coloured, camera});
+    const made = scene.painter.picture(scene.planBox, {width, height, chosen: null, colourOf: byRisk(scene), own: scene.coloured, camera});
     return made && made.canvas.toDataURL('image/png');
   }
 }

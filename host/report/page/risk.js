@@ -3,7 +3,7 @@
 
 // The first panel: what is at risk, from what, what happens then, and what to do about it.
 
-const listedObjects = 8, listedDoubts = 4, listedUnseen = 4, listedOnPhones = 3;
+const listedObjects = 8, listedDoubts = 4, listedLooks = 12, listedUnseen = 4;
 
 // A number that is the higher the more it is to be acted on: by category, within one above none first what is certain to be in it.
 function urgencyOf(object) {
@@ -20,6 +20,47 @@ function byUrgency(scene, wanted) {
 // What can fall and is to be acted on first.
 function riskiest(scene) {
   return byUrgency(scene, object => !isDoubtful(object) && !isNearly(object)).slice(0, listedObjects);
+}
+
+// What is to be acted on, and what would be if one were sure of it: of medium or high category, the most urgent first.
+function urgentOnes(scene, sure) {
+  return byUrgency(scene, object => !isDoubtful(object) && !isNearly(object) && object.seen_enough !== false && /medium|high/.test(object.unsafety_category) &&
+    sure === !(isUnsure(object) || object.piece_of >= 0 || stoodText(object)));
+}
+
+// What is to be looked at before anybody acts.
+function looksOf(scene) {
+  const unsure = [...urgentOnes(scene, false), ...doubtfulOnes(scene)];
+  return [...byUrgency(scene, object => unsure.includes(object)), ...nearlyOnes(scene), ...tallOnes(scene)];
+}
+
+// What has its number in the views and on the plan.
+function numberedOnes(scene) {
+  return [...urgentOnes(scene, true), ...looksOf(scene), ...calmOnes(scene)].slice(0, listedLooks);
+}
+
+// What is at risk, and neither of those.
+function calmOnes(scene) {
+  const others = [...urgentOnes(scene, true), ...looksOf(scene)];
+  return riskiest(scene).filter(object => object.seen_enough !== false && !others.includes(object));
+}
+
+// "3 things to act on, 8 to look at, 6 not judged"
+function headlineText(act, look, unseen) {
+  return [act ? `${plural(act, 'thing')} to act on` : 'Nothing to act on', ...look ? [`${look} to look at`] : [], ...unseen ? [`${unseen} not judged`] : []].join(', ');
+}
+
+function headlineOf(scene) {
+  if (!scene.objects.some(object => !object.grounded)) return 'Nothing here can move';
+  const unseen = unseenOnes(scene).length;
+  if (nothingJudged(scene)) return `Nothing was judged: the scan does not show what holds ${unseen === 1 ? 'the one thing' : `the ${unseen} things`} here`;
+  return headlineText(urgentOnes(scene, true).length, looksOf(scene).length, unseen);
+}
+
+// Of the notes those that change what one may believe at all: units and poses in doubt, what is no scan, or a coarse one.
+function believeTexts(scene) {
+  const heavy = /^(It all extends|The points extend over|The (places of )?poses|Two directions may be up|Up could not|Nothing in the (input|scan))|askew|doubled|no scan: /;
+  return [...scene.notes.filter(note => heavy.test(note)), coarseText(scene)].filter(text => text);
 }
 
 // Nothing upsets it as measured, and yet its category is above none: that of the worse end of its errors.
@@ -51,13 +92,13 @@ function unseenOnes(scene) {
   return scene.objects.filter(object => !object.grounded && object.seen_enough === false).sort((a, b) => bulk(b) - bulk(a) || a.id - b.id);
 }
 
-// At risk as scanned, but the scan hardly shows what holds it.
+// At risk as scanned, but the scan hardly shows what holds it. What is of category none even at the worse end of its errors needs no look.
 function doubtfulOnes(scene) {
-  return byUrgency(scene, isDoubtful);
+  return byUrgency(scene, object => isDoubtful(object) && object.unsafety_category !== 'none');
 }
 
-// Which disturbances the run left out, and which of them found nothing to act on.
-function missingText(scene) {
+// Which disturbances the run left out, and which of them found nothing to act on: notes of the page's own.
+function missingTexts(scene) {
   // Whether there is wind in a room its scan doesn't tell: a note says what was taken.
   const lines = [], left = disturbanceKinds.filter(kind => !kind.may_be_left_out && !scene.disturbances.includes(kind.name)).map(kind => kind.name);
   if (scene.objects.length && left.length) {
@@ -67,9 +108,7 @@ function missingText(scene) {
   if (scene.disturbances.includes('human') && !scene.view.walks.shade.some(shade => shade > 0)) {
     lines.push('No floor was found on which people could walk, so their walks put nothing at risk here.');
   }
-  // What the list below stands or falls with.
-  lines.push(...scene.notes.filter(note => /^(People walk|Object|A ceiling|The hazard curve|\S+ m\/s\u00b2 is)/.test(note)));
-  return lines.join(' ');
+  return lines;
 }
 
 // Of a scan whose points are so far apart that feet are badly seen: which of the objects listed stand on too little for it; '' of others.
@@ -78,9 +117,8 @@ function coarseText(scene) {
   const found = scene.notes.map(note => note.match(/^The points are about (\d+) mm apart: .* what stands on less than (\d+) mm /)).find(match => match);
   if (!found) return '';
   const narrow = Number(found[2]) / 1000, centimetres = text => `${Math.round(Number(text) / 10)} cm`;
-  const narrowOnes = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts)]
-    .filter(object => object.size_m && object.size_m[2] > 0 && Math.min(object.size_m[0], object.size_m[1]) < narrow).sort((a, b) => a.id - b.id);
-  return `Coarse scan (points ${centimetres(found[1])} apart): barriers of all things narrower than ${centimetres(found[2])} are doubtful` +
+  const narrowOnes = numberedOnes(scene).filter(object => object.size_m && object.size_m[2] > 0 && Math.min(object.size_m[0], object.size_m[1]) < narrow).sort((a, b) => a.id - b.id);
+  return `Coarse scan (points ${centimetres(found[1])} apart): unsure of all things narrower than ${centimetres(found[2])}` +
     `${narrowOnes.length ? `, here ${listed(narrowOnes.map(object => objectName(scene, object.id).replace(/^object /, '')))}` : ''}: a denser scan tells.`;
 }
 
@@ -93,13 +131,13 @@ function largestRiskText(object) {
   return `Risk ${number(risk)}${within(error)} J per ${event}`;
 }
 
-// What else an object may be, and what that would mean: "one thing with object 5, 41 % likely: then 35 J, low".
+// What else an object may be, and what that would mean: "unsure: one thing with object 5, 41 % likely: then 35 J, low".
 function otherwiseTexts(scene, object, share) {
   return (object.alternatives || []).map(other => {
     const what = other.whole >= 0 ? `one thing with ${objectName(scene, other.whole)}` : 'two things';
     const look = other.whole >= 0 ? '' : ` (look whether its parts ${object.weakest_joint.join(' and ')} are one)`;
     const means = other.unsafety_category && other.unsafety_category !== object.unsafety_category ? `: then ${number(other.barrier_J)} J, ${other.unsafety_category}` : '';
-    return `perhaps ${what}${look}, ${share(other.probability)} likely${means}`;
+    return `unsure: ${what}${look}, ${share(other.probability)} likely${means}`;
   });
 }
 
@@ -108,7 +146,7 @@ function howSureText(scene, object) {
   if (object.grounded) return '';
   const share = value => `${Math.max(1, Math.round(100 * value))} %`, parts = [];
   if (object.agreement < 0.995) parts.push(`one whole thing: ${share(object.agreement)} likely`);
-  parts.push(...otherwiseTexts(scene, object, share));
+  parts.push(...object.piece_of >= 0 ? [pieceText(scene, object)] : [], ...otherwiseTexts(scene, object, share));
   const held = {seen: 'seen', near: 'a gap that the scan left is bridged', leaning: 'it leans on what is beside it', hidden: 'not seen', none: 'not seen'}[object.rests_by];
   if (held && object.seen_enough === false) parts.push('what holds it was not seen');
   else if (held && object.rest_probability < 0.5) parts.push(`what holds it: ${held}, ${share(object.rest_probability)} likely, one of several readings`);
@@ -160,130 +198,95 @@ function shortMass(scene, object) {
   return massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || '');
 }
 
+// A paragraph, where there is a text.
+function paragraph(className, text) {
+  return text ? [element('p', {className, text})] : [];
+}
+
+// What happens, in a sentence: "1 in 40 walks tips it over, which can injure badly." Of a piece of another thing how hard it lands says little.
+function happensInShort(object) {
+  const able = object.piece_of >= 0 ? '' : severityText(mostReleased(object)), name = causesOf(object)[0];
+  if (object.seen_enough === false) return 'Nothing was seen to hold it.';
+  if (isDoubtful(object)) return `Unsure what holds it${able && `; its fall ${able}`}.`;
+  if (isNearly(object)) return 'Nothing upsets it as measured, but its foot is unsure.';
+  const chance = name ? chanceText(name, (object.fall_chance || {})[name]) : '';
+  if (!chance || /^no /.test(chance)) return `${name ? 'Hardly anything' : 'Nothing'} here upsets it${able && `; its fall ${able}`}.`;
+  const how = {tip: ['tips it over', 'tip it over'], slide: ['pushes it off', 'push it off']}[object.mode] || ['upsets it', 'upset it'];
+  const landing = severityText(releaseOf(object));
+  return capital(`${chance} ${how[Number(/^\d+ in 10 /.test(chance))]}${able && `, which ${landing}`}.`);
+}
+
+// What to do, in a sentence: of the program's the first clause.
+function todoInShort(object) {
+  if (object.seen_enough === false) return 'Go and look what holds it.';
+  if (isDoubtful(object) || stoodText(object)) return 'Push it by hand: does it stand firm?';
+  if (isNearly(object)) return 'Check that it stands firm.';
+  const {action = '', sentence} = object.advice || {};
+  if (/ tall and heavy: /.test(action)) return 'Tall and heavy: see that it is fastened.';
+  if (object.unsafety_category === 'none') return 'No need to act.';
+  return sentence ? `${sentence.split(/, with |[:;(]|\. |\.$/)[0].trim()}.` : 'Fasten it if it must not fall.';
+}
+
+// All that there is to know of it in words, for its card and its panel.
+function tellings(scene, object) {
+  const doubtful = isDoubtful(object), unseen = object.seen_enough === false, known = !unseen && !isNearly(object);
+  return [[isAdvised(object) || unseen ? 'advice' : '', unseen ? 'Go and look what holds it.' : object.advice.action], ['', [object.name ? `object ${object.id}` : '', shortMass(scene, object), sizeText(object)].filter(text => text).join(', ')],
+    ['', placeText(scene, object)], ['', known ? largestRiskText(object) : ''], ['', upsetText(scene, object)], ['', known ? yearsText(scene, object) : ''],
+    ['', doubtful ? doubtText(object) : ''], ['', unseen ? '' : stoodText(object)], ['', fallKnown(object) ? happensText(scene, object) : ''], ['clear', keepClearText(scene, object)],
+    ['', overturningText(object)], ['', howSureText(scene, object)]]
+    .flatMap(([className, text]) => paragraph(`why ${className}`, text && text.replace(/([^.?])$/, '$1.')));
+}
+
 // on: what its buttons do: choose(id, event), show(id, other) what it may be a piece of, join(id, other) and undo that, joined(id, other): whether that was said.
 function riskCard(scene, object, on) {
-  const doubtful = isDoubtful(object), unseen = object.seen_enough === false, plain = !doubtful && !unseen && !isNearly(object);
   const words = element('span', {className: 'words'}, [
-    element('span', {className: 'head'}, [objectSwatch(scene, object.id), element('strong', {text: capital(objectName(scene, object.id))}),
-      categoryBadge(scene, object)])]);
-  const say = (className, text) => { if (text) words.append(element('span', {className, text})); };
-  say('mass', [object.name ? `object ${object.id}` : '', shortMass(scene, object), sizeText(object)].filter(text => text).join(', '));
-  if (plain || doubtful) say('standing', largestRiskText(object));
-  say(isUnsure(object) ? 'doubt' : 'mass', howSureText(scene, object));
-  const piece = pieceText(scene, object);
-  if (piece) say('doubt', `Look first: it may be ${piece}. If so, say so below this card.`);
-  say('mass', placeText(scene, object));
-  if (!unseen) say('doubt', stoodText(object));
-  if (doubtful) say('from', `${doubtText(object)} ${happensText(scene, object)}`);
-  else if (plain) say('from', upsetText(scene, object));
-  if (plain || doubtful) say('from', yearsText(scene, object));
-  if (plain) for (const text of [happensText(scene, object), keepClearText(scene, object)]) say('then', text);
-  say(isAdvised(object) || unseen ? 'advice' : 'calm', unseen ? 'Go and look what holds it.' : object.advice.action);
-  if (plain) say('then figures', overturningText(object));
+    element('span', {className: 'head'}, [element('strong', {text: capital(objectName(scene, object.id))}), categoryBadge(scene, object)]),
+    element('span', {text: happensInShort(object)}),
+    element('span', {className: isAdvised(object) || object.seen_enough === false ? 'advice' : 'calm', text: todoInShort(object)})]);
   const item = element('button', {type: 'button', className: 'item', onclick: event => on.choose(object.id, event)}, [words]);
   const picture = pictureOf(scene, object.id);
   if (picture) item.prepend(picture);
   item.dataset.object = object.id;
-  return element('div', {className: 'card'}, [item, ...pieceButtons(scene, object, on)]);
+  return element('div', {className: 'card'}, [...pieceButtons(scene, object, on), item,
+    element('details', {}, [element('summary', {text: 'details', 'aria-label': `details of ${objectName(scene, object.id)}`}), ...tellings(scene, object)])]);
 }
 
-function joinText(scene, other, joined) {
-  return joined ? 'noted, undo' : `one thing with ${objectName(scene, other)}`;
+function joinText(joined) {
+  return joined ? 'noted, undo' : 'join';
 }
 
 // To say that it is one thing with what it may be a piece of, and to see that.
 function pieceButtons(scene, object, on) {
   if (!(object.piece_of >= 0)) return [];
   const other = object.piece_of, name = objectName(scene, other);
-  const join = element('button', {type: 'button', text: joinText(scene, other, on.joined(object.id, other)), 'data-join': other, onclick: () => on.join(object.id, other)});
+  const join = element('button', {type: 'button', text: joinText(on.joined(object.id, other)), title: `it is one thing with ${name}`, 'data-join': other, onclick: () => on.join(object.id, other)});
   join.dataset.of = object.id;
-  return [element('p', {className: 'row piece'}, [join,
-    element('button', {type: 'button', className: 'link', text: `show ${name}`, 'data-show': other, onclick: () => on.show(object.id, other)})])];
+  return [element('p', {className: 'row piece'}, [`May be part of ${name}`, join,
+    element('button', {type: 'button', className: 'link', text: 'show', 'aria-label': `show ${name}`, 'data-show': other, onclick: () => on.show(object.id, other)})])];
 }
 
-// A paragraph, where there is a text.
-function paragraph(className, text) {
-  return text ? [element('p', {className, text})] : [];
+// A group of the list, folded or not.
+function cardGroup(title, children, open = false) {
+  return element('details', {className: 'cards', open}, [element('summary', {}, [element('h3', {text: title})]), ...children]);
 }
 
 function fillRisk(panel, scene, on) {
-  const worst = riskiest(scene), doubtful = doubtfulOnes(scene);
-  const movable = scene.objects.filter(object => !object.grounded).length;
-  panel.append(element('h2', {text: 'What is at risk, and what to do'}),
-    ...scene.notes.filter(text => /left out, as for/.test(text)).flatMap(note => paragraph('hint', note)),
-    ...[coarseText(scene), missingText(scene)].flatMap(text => paragraph('warning', text)));
-  if (worst.length) fillRiskiest(panel, scene, worst, movable, on);
-  else panel.append(...paragraph('hint', nothingJudged(scene) ? 'Nothing was judged: the first line of this page says why.'
-    : `None of the disturbances puts ${doubtful.length ? 'any other' : 'an'} object at risk.`));
-  fillLooks(panel, scene, doubtful, on);
+  const act = urgentOnes(scene, true), looks = looksOf(scene), unseen = unseenOnes(scene), calm = calmOnes(scene), card = object => riskCard(scene, object, on);
+  const items = (objects, most) => objects.length ? [element('div', {className: 'items'}, objects.slice(0, most).map(card)),
+    ...paragraph('hint', objects.length > most ? `And ${objectList(objects.slice(most).map(({id}) => id))}.` : '')] : [];
+  const title = [...looks.length ? [`To look at (${looks.length})`] : [], ...unseen.length ? [`not judged (${unseen.length})`] : []];
+  panel.append(...act.length ? [cardGroup(`To act on (${act.length})`, items(act, Infinity), true)] : [],
+    ...title.length ? [cardGroup(capital(title.join(', ')), [...items(looks, listedLooks), ...items(unseen, listedUnseen)], !act.length)] : [],
+    ...calm.length ? [cardGroup(`Less urgent (${calm.length})`, items(calm, listedObjects))] : []);
 }
 
-// What is to be looked at: since it would fall at once, since it might with a smaller foot, and since nobody saw what holds it.
-function fillLooks(panel, scene, doubtful, on) {
-  const nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
-  const cards = (objects, most) => panel.append(element('div', {className: 'items'}, objects.slice(0, most).map(object => riskCard(scene, object, on))),
-    ...objects.length > most ? [element('p', {className: 'hint', text: `And ${listed(objects.slice(most, most + 12).map(object => objectName(scene, object.id)))}` +
-      (objects.length > most + 12 ? `, and ${objects.length - most - 12} more` : '') + '.'})] : []);
-  if (doubtful.length || nearly.length) panel.append(element('h3', {text: 'To be looked at'}));
-  if (doubtful.length) {
-    const [them, stand] = doubtful.length === 1 ? ['it', 'it stands'] : ['them', 'they stand'];
-    panel.append(...paragraph('hint', `Of ${plural(doubtful.length, 'more object')} at risk the scan hardly shows what holds ${them}, or ` +
-      `${stand} on edge: the least push that upsets ${them} can\u2019t be told from nothing.`));
-    cards(doubtful, listedDoubts);
-  }
-  if (nearly.length) {
-    panel.append(...paragraph('hint', `${doubtful.length ? 'And ' : ''}${plural(nearly.length, 'object')} that nothing upsets as measured, but might:`));
-    cards(nearly, listedDoubts);
-  }
-  const tall = tallOnes(scene);
-  if (tall.length) {
-    panel.append(element('h3', {text: 'Tall and heavy: see that it is fastened'}), element('p', {className: 'hint', text: 'Nothing in this run upsets these.'}),
-      objectLinks(scene, tall.map(object => [object.id, sizeText(object)]), on.choose));
-  }
-  if (!unseen.length) return;
-  panel.append(element('h3', {text: 'The scan does not show what holds these: go and look'}),
-    element('p', {className: 'hint', text: `${plural(unseen.length, 'object')} without a rank, the largest first; on the plan they have a \u201c?\u201d.`}));
-  cards(unseen, listedUnseen);
-}
-
-function eventsText(scene) {
-  const all = disturbanceKinds.filter(kind => scene.disturbances.includes(kind.name)).map(kind => oneEventText(scene, kind));
-  return all.length ? `An event is ${listed(all, 'or')}.` : '';
-}
-
-// "The 3 riskiest of the 5 objects that can fall"; fewer words where that is all of them, or one.
-function riskiestOf(shown, all, which) {
-  if (all === 1) return `The one object ${which}`;
-  if (shown >= all) return `The ${all} objects ${which}, the riskiest first`;
-  return `The ${shown === 1 ? '' : shown + ' '}riskiest of the ${all} objects ${which}`;
-}
-
-// Of which objects the list is, and where the others are.
-function rankedText(scene, shown, movable) {
-  const doubtful = scene.objects.filter(isDoubtful);
-  const unseen = scene.objects.filter(object => !object.grounded && !isDoubtful(object) && object.seen_enough === false).length;
-  const nearly = nearlyOnes(scene).length, uncertain = doubtful.length + unseen + nearly;
-  const of = riskiestOf(shown, movable - uncertain, uncertain ? 'whose barrier is above its error' : 'that can move');
-  const listed = `${of}.` + (unseen ? ` ${unseen} more ${unseen === 1 ? 'has' : 'have'} no rank, since nothing was seen to hold ${unseen === 1 ? 'it' : 'them'}.` : '') +
-    (nearly ? ` ${nearly} more nothing upsets as measured, but ${nearly === 1 ? 'its errors leave a category' : 'their errors leave categories'} open.` : '');
-  if (!doubtful.length) return listed;
-  const atRisk = doubtful.filter(object => largestRisk(object) > 0), urgent = atRisk.filter(object => /medium|high/.test(object.unsafety_category)).length;
-  return `${listed} ${doubtful.length} more stand${doubtful.length === 1 ? 's' : ''} on edge, or the scan hardly shows the support: ` +
-    (atRisk.length ? `below, under \u201cTo be looked at\u201d${urgent ? `, ${urgent} of them perhaps medium or high` : ''}.` : 'nothing puts them at risk.');
-}
-
-function fillRiskiest(panel, scene, worst, movable, on) {
-  panel.append(element('p', {className: 'order'}, ['Act from the top: cards go by ', term('category', 'category'),
-    ', which says how likely an event makes the thing fall and how hard it then lands, within one those of which it is certain first (? it may be lower), and then by ', term('risk', 'risk'), '.']));
-  panel.append(element('p', {className: 'hint', text: rankedText(scene, worst.length, movable)}));
-  panel.append(element('details', {}, [element('summary', {text: 'How to read this'}), element('p', {className: 'hint', text: eventsText(scene) +
-    ' The badge is the category, high to none; ? where its errors leave a lower one open, or it may be a piece of another thing. What is \u201cnone\u201d falls too seldom or too softly ' +
-    'to matter. \u00b1 is one standard error. \u201cIf solid\u201d: the mass is that of its whole volume, at ' +
-    `${number(scene.density_kg_m3, 'kg/m\u00b3')}, about that of wood; what is hollow is lighter. Straps must hold what is said at least: no safety margin is in it. `}, [term('advice', 'Advice'), ' (\u2192) is what brings the risk below the tolerated one; where it is not to ' +
-    'move the thing, no safer place was found within 1.5 m on what carries it, or it is not one of the 16 of the largest risk, for which one is looked for.'])]));
-  const tolerated = worst.every(object => object.unsafety_category === 'none' && !(object.advice && object.advice.kind));
-  panel.append(...paragraph('hint', tolerated ? 'All of these risks are tolerated: nothing needs to be done.' : ''),
-    element('div', {className: 'items'}, worst.map(object => riskCard(scene, object, on))),
-    ...worst.length > listedOnPhones ? [element('button', {type: 'button', className: 'more', text: `show ${worst.length - listedOnPhones} more`,
-      onclick: () => panel.classList.add('all')})] : []);
+// How to read the list.
+function fillHow(node, scene) {
+  const line = (...parts) => element('p', {}, parts), events = disturbanceKinds.filter(kind => scene.disturbances.includes(kind.name)).map(kind => oneEventText(scene, kind));
+  node.append(line('Act from the top: cards go by ', term('category', 'category'), ', high to none, within one those of which it is sure first, and then by ', term('risk', 'risk'),
+    '. Unsure: its errors leave a lower one open, or it may be part of another thing. What is \u201cnone\u201d falls too seldom or too softly to matter.', events.length ? ` An event is ${listed(events, 'or')}.` : ''),
+  line('\u00b1 is one standard error. \u201cIf solid\u201d: the mass is that of its whole volume, at ' +
+    `${number(scene.density_kg_m3, 'kg/m\u00b3')}, about that of wood; what is hollow is lighter. Straps must hold what is said at least: no safety margin is in it. `, term('advice', 'Advice'),
+  ' (\u2192) is what brings the risk below the tolerated one; where it is not to move the thing, no safer place was found within 1.5 m on what carries it, or it is not one of the 16 of the largest ' +
+    'risk, for which one is looked for.'));
 }

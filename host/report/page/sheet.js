@@ -6,7 +6,7 @@
 // shown: with its picture.
 function sheetLine(scene, object, todo, more = [], shown = true) {
   const what = [sizeText(object), placeInShort(scene, scene.boxes.get(object.id))].filter(text => text).join(', at ');
-  const badge = object.unsafety_category ? categoryText(object) : 'not known';
+  const badge = object.unsafety_category ? categoryText(object) : 'not judged';
   const picture = shown && pictureOf(scene, object.id);
   return element('li', {}, [element('span', {className: 'box'}), ...picture ? [picture] : [], element('div', {}, [
     element('strong', {text: `${capital(objectName(scene, object.id))}${object.name ? ` (object ${object.id})` : ''}, ${badge}: `}), `${todo} `,
@@ -42,7 +42,7 @@ const slight_J = 1, serious_J = 15, deadly_J = 79;
 
 // What such an energy does.
 function severityText(joules) {
-  return joules >= deadly_J ? 'can kill' : joules >= serious_J ? 'injures badly' : joules >= slight_J ? 'injures slightly' : 'harmless';
+  return joules >= deadly_J ? 'can kill' : joules >= serious_J ? 'can injure badly' : joules >= slight_J ? 'can injure slightly' : 'does no harm';
 }
 
 function setsFreeText(object) {
@@ -58,7 +58,7 @@ function bracketText(object) {
 
 // The note on how little floor people walk on, where nothing but walks upsets what comes first.
 function fewWalksText(scene) {
-  const first = riskiest(scene)[0];
+  const first = numberedOnes(scene)[0];
   if (!first || causesOf(first).join() !== 'human') return '';
   return scene.notes.find(note => /^People walk on only /.test(note)) || '';
 }
@@ -76,30 +76,32 @@ function correctionLines(scene, parts) {
 
 function fillSheet(scene) {
   const sheet = document.getElementById('sheet'), node = (name, text, className = '') => element(name, {text, className});
-  const act = riskiest(scene).filter(isAdvised), calm = riskiest(scene).filter(object => !isAdvised(object) && /medium|high/.test(object.unsafety_category));
+  const act = urgentOnes(scene, true), unsure = urgentOnes(scene, false), calm = calmOnes(scene).filter(isAdvised);
   const list = (title, lines, left) => lines.length ? [node('h2', title), element('ol', {className: 'todo'}, lines),
     ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the pages that follow.`, 'hint')] : []] : [];
   const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene), tall = tallOnes(scene);
   const look = piece => piece && `first look whether it is ${piece}, which is to be fastened as a whole then. `;
   const stood = object => stoodText(object) && `${stoodText(object)} `;
-  const doing = object => sheetLine(scene, object, look(pieceText(scene, object)) + stood(object) + object.advice.action, [bracketText(object), dangerText(scene, object), sheetYears(scene, object)]);
+  const doing = object => [object, look(pieceText(scene, object)) + stood(object) + object.advice.action, [bracketText(object), dangerText(scene, object), sheetYears(scene, object)], true];
+  const lines = ones => ones.map(one => sheetLine(scene, ...one));
   // What sets most free first.
-  const looks = [...doubtful.slice(0, listedDoubts).map(object => [object, `look whether it stands firm. ${doubtText(object)}`, [setsFreeText(object), sheetYears(scene, object)]]),
-    ...[...nearly.slice(0, listedDoubts), ...tall.slice(0, listedDoubts)].map(object => [object, object.advice.action, []]),
-    ...calm.map(object => [object, object.advice.action, [dangerText(scene, object)]])]
-    .sort(([a], [b]) => mostReleased(b) - mostReleased(a) || a.id - b.id).map(([object, todo, more]) => sheetLine(scene, object, todo, more, false));
+  const looks = [...unsure.slice(0, listedObjects).map(doing),
+    ...doubtful.slice(0, listedDoubts).map(object => [object, `look whether it stands firm. ${doubtText(object)}`, [setsFreeText(object), sheetYears(scene, object)], false]),
+    ...[...nearly.slice(0, listedDoubts), ...tall.slice(0, listedDoubts)].map(object => [object, object.advice.action, [], false])]
+    .sort(([a], [b]) => mostReleased(b) - mostReleased(a) || a.id - b.id);
   const holds = unseen.slice(0, listedUnseen).map(object => sheetLine(scene, object, 'go and look what holds it.', [], false));
   const kinds = disturbanceKinds.filter(kind => scene.disturbances.includes(kind.name));
   sheet.replaceChildren(
     node('p', 'This is no safety certificate. What follows was estimated from one scan: what was not seen is inferred, masses and friction are guessed, and what ' +
       'belongs together may have been told apart wrongly. Look before you act, and before you rely on it.', 'certificate'),
     ...[coarseText(scene), fewWalksText(scene)].filter(text => text).map(text => node('p', text, 'warning')),
-    ...list('To do, from the top', act.map(doing), 0),
-    ...!act.length && !nothingJudged(scene) ? [node('p', 'Of what was judged nothing was found that has to be fastened or moved.')] : [],
+    ...list('To act on, from the top', lines(act.map(doing)), 0),
+    ...!act.length && !nothingJudged(scene) ? [node('p', 'Of what was judged nothing was found that surely has to be fastened or moved.')] : [],
     ...list('Already fixed: check the straps', (scene.corrections || []).filter(one => one.do === 'fixed' && one.held !== false).map(one => fixedLine(scene, one)), 0),
-    ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
-    ...list('To be looked at', looks, doubtful.length + nearly.length + tall.length + calm.length - looks.length),
-    ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
+    ...scene.objects.some(object => object.grounded) ? list('Not judged, as part of the building', [greyLine(scene)], 0) : [],
+    ...list('To look at', lines(looks), unsure.length + doubtful.length + nearly.length + tall.length - looks.length),
+    ...list('Less urgent', lines(calm.map(doing)), 0),
+    ...list('Not judged, since the scan does not show what holds these: go and look', holds, unseen.length - holds.length),
     node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; what lands with less than ${slight_J} J is harmless, from ${serious_J} J on it injures badly, from ${deadly_J} J on it can kill. ` +
-      'Straps must hold what is said at least: no safety margin is in it. ?: it may be less, or a piece of another thing.', 'hint'));
+      'Straps must hold what is said at least: no safety margin is in it. Unsure: it may be less, or a piece of another thing.', 'hint'));
 }

@@ -51,17 +51,17 @@ function riskError(object, name) {
   return (object.risk_error_J || object.risk_spread_J || {})[name];
 }
 
-// Why the category is not certain.
-function uncertainText(object) {
+// Why it is unsure of its category.
+function unsureText(object) {
   if (object.rest_probability < 0.5) return 'how it stands is one of several readings of the scan';
   if ((object.overturning || {}).tilt_deg < 3) return 'it stands, although the slightest lean would upset it by these figures';
   if (stoodText(object)) return 'it stands, although walks like those before would have upset it by these figures';
   return object.unsafety_category === 'none' ? 'it may be a piece of another thing, or the scan hardly shows what holds it' : 'its errors, or what it may be a piece of, leave a lower one open';
 }
 
-// The category, with a question mark where the errors leave it open.
+// The category, and whether the errors leave it open.
 function categoryText(object) {
-  return object.unsafety_category ? object.unsafety_category + (object.unsafety_certain ? '' : '?') : '\u2013';
+  return object.unsafety_category ? object.unsafety_category + (object.unsafety_certain ? '' : ', unsure') : '\u2013';
 }
 
 // Joules per event, their error, and the chance per event that it falls.
@@ -90,10 +90,10 @@ function noCategoryText(object) {
 }
 
 function categoryBadge(scene, object) {
-  if (!object.unsafety_category) return element('span', {className: 'category', text: 'not known', title: noCategoryText(object)});
+  if (!object.unsafety_category) return element('span', {className: 'category', text: 'not judged', title: noCategoryText(object)});
   const colour = categoryColour(scene, object.unsafety_category);
   return element('span', {
-    className: 'category', title: 'category' + (object.unsafety_certain ? '' : `: ${uncertainText(object)}`), text: categoryText(object),
+    className: 'category', title: 'category' + (object.unsafety_certain ? '' : `: ${unsureText(object)}`), text: categoryText(object),
     style: {background: css(colour), color: textOn(colour)},
   });
 }
@@ -180,7 +180,7 @@ function figuresOf(scene, object) {
   }
   if (object.unsafety_category) {
     pairs.push([element('span', {}, [term('category', 'Category'), ', by which to act']),
-      object.unsafety_category + (object.unsafety_certain ? '' : `, ${object.unsafety_category === 'none' ? 'but not certain' : 'or lower'}: ${uncertainText(object)}`)]);
+      categoryText(object) + (object.unsafety_certain ? '' : `: ${unsureText(object)}`)]);
   }
   pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
   return pairs;
@@ -201,30 +201,20 @@ function showObject(panel, scene, id, choose, visit, acts) {
   panel.append(element('div', {className: 'row'}, [
     element('button', {type: 'button', text: '\u2190 all that is at risk', onclick: () => {
       choose(null);
-      (document.querySelector(`.item[data-object="${id}"]`) || document.getElementById('risk')).focus();
+      const item = document.querySelector(`.item[data-object="${id}"]`);
+      if (item) item.closest('.cards').open = true;
+      (item || document.getElementById('risk')).focus();
     }}),
     element('button', {type: 'button', className: 'near', text: 'show in the view', title: 'The view goes there', onclick: () => visit(id)})]));
-  const heading = element('h2', {tabIndex: -1}, [objectSwatch(scene, id), capital(objectName(scene, id)) + (object.name ? ` (object ${id})` : ''),
+  const heading = element('h2', {tabIndex: -1}, [capital(objectName(scene, id)) + (object.name ? ` (object ${id})` : ''),
     ...object.grounded ? [] : [' ', categoryBadge(scene, object)]]);
   panel.append(heading);
   const picture = pictureOf(scene, id);
   if (picture) panel.append(picture);
-  const say = (text, className = 'why') => { if (text) panel.append(element('p', {className, text})); };
-  if (!object.grounded) say(upsetText(scene, object));
-  if (isDoubtful(object)) say(doubtText(object));
-  if (object.seen_enough !== false) say(stoodText(object));
-  if (fallKnown(object)) say(happensText(scene, object));
-  say(keepClearText(scene, object), 'clear');
-  if (!object.grounded && object.unsafety_category !== undefined) say(object.advice.action, isAdvised(object) ? 'advice' : 'why');
-  say(object.why.sentence);
-  panel.append(...pieceButtons(scene, object, acts));
-  if (object.grounded) say('If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.', 'advice');
-  say(overturningText(object));
+  panel.append(...object.grounded ? [] : tellings(scene, object), ...pieceButtons(scene, object, acts), ...paragraph('why', object.why.sentence),
+    ...paragraph('why advice', object.grounded ? 'If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.' : ''),
+    ...paragraph('why', fragilityText(scene, object)), ...paragraph('why', scene.verified ? verifiedObjectText(scene.verified, id) : ''));
   const curve = fragilityChart(object);
-  say(fragilityText(scene, object));
-  say(yearsText(scene, object));
-  say(howSureText(scene, object));
-  say(scene.verified ? verifiedObjectText(scene.verified, id) : '');
   panel.append(numberList(figuresOf(scene, object)));
 
   if (curve) {

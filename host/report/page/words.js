@@ -35,15 +35,15 @@ function objectList(ids) {
   return (ids.length === 1 ? 'object ' : 'objects ') + listed(shown);
 }
 
-// A chance per event as "1 walk in 40".
+// A chance per event as "1 in 40 walks".
 function chanceText(name, chance) {
   const {event} = kindOf(name);
   if (chance === null || chance === undefined) return '';
   if (chance <= 0) return `no ${event}`;
   if (chance >= 0.95) return `nearly every ${event}`;
-  if (chance > 0.4) return `${Math.round(10 * chance)} ${event}s in 10`;
-  if (chance < 1e-4) return `less than 1 ${event} in 10,000`;
-  return `1 ${event} in ${Math.round(twoDigits(1 / chance)).toLocaleString('en')}`;
+  if (chance > 0.4) return `${Math.round(10 * chance)} in 10 ${event}s`;
+  if (chance < 1e-4) return `less than 1 in 10,000 ${event}s`;
+  return `1 in ${Math.round(twoDigits(1 / chance)).toLocaleString('en')} ${event}s`;
 }
 
 // The largest of an object's risks: 0 where it has none.
@@ -69,17 +69,15 @@ function upsetText(scene, object) {
   const names = causesOf(object);
   if (!names.length) return 'Upset by none of the disturbances.';
   const chances = names.map(name => ({name, text: chanceText(name, (object.fall_chance || {})[name])})).filter(({text}) => text)
-    .map(({name, text}) => text + peaksText(scene, name, text));
+    .map(({name, text}) => text + peaksText(scene, name));
   if (!chances.length) return `At risk from ${listed(names.map(causeOf))}.`;
   return `Upset by ${listed(chances, 'or')}.`;
 }
 
-// Of which earthquakes a chance is: " of those around 0.31 g"; '' of other disturbances.
-function peaksText(scene, name, chance) {
+// Of which earthquakes a chance is: " around 0.31 g"; '' of other disturbances.
+function peaksText(scene, name) {
   const {key} = kindOf(name).figure || {}, peak = (scene.events || {})[key];
-  if (key !== 'pga_m_s2' || !(peak > 0)) return '';
-  const among = /^(no|nearly every) /.test(chance) ? '' : ' of those';
-  return `${among} ${scene.events.pga_spread > 0 ? 'around' : 'with a peak of'} ${twoDigits(peak / 9.80665)} g`;
+  return key === 'pga_m_s2' && peak > 0 ? ` ${scene.events.pga_spread > 0 ? 'around' : 'with a peak of'} ${twoDigits(peak / 9.80665)} g` : '';
 }
 
 // Between which peaks two of three of the earthquakes lie, g; null where all have the same.

@@ -147,8 +147,7 @@ TEST_F(Compare, tells_errors_that_are_too_large_from_no_change) {
         monitor.risk_error_J.human = 9;
         shelf.unsafety_category = 'medium';
     )");
-    for (const char* row : {"object 3: too uncertain to say", "object 4: too uncertain to say",
-                            "object 1: as before"})
+    for (const char* row : {"object 3: unsure", "object 4: unsure", "object 1: as before"})
         EXPECT_THAT(page.data("rows"), HasSubstr(row));
 }
 

@@ -86,7 +86,7 @@ TEST_F(Report, can_not_be_written) {
     EXPECT_THROW(write_report(folder_ / "missing" / "report.html", Scene{}), Error);
 }
 
-TEST_F(ShownReport, shows_the_scans_own_colours_first) {
+TEST_F(ShownReport, shows_risks_first_and_the_scans_own_colours_when_asked) {
     auto scene = test::SyntheticScene(0.1).make();
     const auto script = R"(
         const box = document.getElementById('colour-by'), canvas = toppleView.renderer.domElement;
@@ -100,26 +100,25 @@ TEST_F(ShownReport, shows_the_scans_own_colours_first) {
         };
         out.pressed = box.querySelector('[aria-pressed=true]').dataset.value;
         out.buttons = box.querySelectorAll('button').length;
-        out.first = greens();
-        box.querySelector('[data-value=risk]').click();
         out.risk = greens();
         if (box.querySelector('[data-value=photo]')) box.querySelector('[data-value=photo]').click();
+        out.photo = greens();
         document.querySelector('#show [data-value=points]').click();
         out.dots = greens();
         toppleChoose(3);
         out.faded = greens();
     )";
     const auto plain = open(scene, script);
-    EXPECT_EQ(plain.data("pressed"), "object");
+    EXPECT_EQ(plain.data("pressed"), "risk");
     EXPECT_EQ(plain.data("buttons"), "3");
     auto& p = scene.points;
     p.red.assign(p.x.size(), 30);
     p.green.assign(p.x.size(), 160);
     p.blue.assign(p.x.size(), 40);
     const auto page = open(scene, script);
-    EXPECT_EQ(page.data("pressed"), "photo");
+    EXPECT_EQ(page.data("pressed"), "risk");
     EXPECT_EQ(page.data("buttons"), "4");
-    EXPECT_GT(std::atoi(page.data("first").c_str()), 20);
+    EXPECT_GT(std::atoi(page.data("photo").c_str()), 20);
     EXPECT_LT(std::atoi(page.data("risk").c_str()), 5);
     EXPECT_GT(std::atoi(page.data("dots").c_str()), 10);
     EXPECT_LT(std::atoi(page.data("faded").c_str()), 5);
@@ -133,7 +132,7 @@ TEST_F(ShownReport, shows_the_scene_in_a_browser) {
     const auto page = open(folder_ / "report.html", R"(
         const text = id => document.getElementById(id).textContent;
         is([...document.querySelectorAll('.item')].map(item => item.dataset.object).join(' '), '2 3 4 1', 'by category, what is certain, then by risk');
-        out.first = document.querySelector('.item[data-object="3"]').textContent;
+        out.first = document.querySelector('.item[data-object="3"]').closest('.card').textContent;
         const canvas = toppleView.renderer.domElement, box = canvas.getBoundingClientRect();
         const pixels = () => {
             toppleView.render();
@@ -183,7 +182,7 @@ TEST_F(ShownReport, shows_the_scene_in_a_browser) {
     EXPECT_NE(page.data("middle"), "null") << "the scene is in the middle of the view";
     page.says(
         "first",
-        {"Object 3", "6.2\u00a0kg", "Upset by 1 walk in 40 or 1 earthquake in 40.",
+        {"Object 3", "6.2\u00a0kg", "Upset by 1 in 40 walks or 1 in 40 earthquakes.",
          "It tips over to the north, falls 76 cm to the floor",
          "and takes object 2 along. It would land where 12 of 100 people pass who walk through "
          "the room, with 260\u00a0J.",
@@ -195,7 +194,7 @@ TEST_F(ShownReport, shows_the_scene_in_a_browser) {
     page.says("clicked",
               {"Object 3", "Barrier: energy that moves it", "1.4\u00a0J",
                "Risk from people walking by", "6.5\u00a0J \u00b1 1.3", "Contacts", "Category",
-               "high, or lower: its errors, or what it may be a piece of, leave a lower one "
+               "high, unsure: its errors, or what it may be a piece of, leave a lower one "
                "open",
                "Of 100 earthquakes that all peak at 0.8 g (violent shaking, intensity IX) about 99 "
                "would upset it. Half of those that peak at 0.41 g (severe shaking, intensity VIII) "
@@ -266,9 +265,12 @@ TEST_F(ShownReport, shows_all_on_a_phone) {
         out.widths = widths.join(' ');
         const canvas = document.querySelector('#canvas canvas').getBoundingClientRect();
         out.canvas = canvas.width >= 300 && canvas.height >= 280 && canvas.right <= innerWidth;
-        out.items = [...document.querySelectorAll('.item')].filter(item => item.offsetHeight > 0).length;
-        document.querySelector('.more').click();
-        out.more = [...document.querySelectorAll('.item')].filter(item => item.offsetHeight > 0).length;
+        toppleChoose(null);
+        const items = () => [...document.querySelectorAll('.item')].filter(item => item.checkVisibility()).length;
+        out.items = items();
+        for (const group of document.querySelectorAll('.cards')) group.open = true;
+        out.more = items();
+        out.first = document.querySelector('.stage').getBoundingClientRect().top < document.getElementById('risk').getBoundingClientRect().top;
         const small = [...document.querySelectorAll('p, td, button, dd')].filter(node => node.offsetHeight > 0 &&
             parseFloat(getComputedStyle(node).fontSize) < 12);
         out.small = small.length;
@@ -277,7 +279,8 @@ TEST_F(ShownReport, shows_all_on_a_phone) {
     EXPECT_EQ(page.data("window"), "390") << page.log;
     EXPECT_EQ(page.data("widths"), "0 0 0 0") << "nothing to scroll sideways";
     EXPECT_EQ(page.data("canvas"), "true");
-    EXPECT_EQ(page.data("items"), "3");
+    EXPECT_EQ(page.data("items"), "2");
+    EXPECT_EQ(page.data("first"), "true") << "the view comes before the cards";
     EXPECT_EQ(page.data("more"), "4");
     EXPECT_EQ(page.data("small"), "0") << "text too small to read";
     EXPECT_EQ(page.data("failed"), "");
@@ -292,27 +295,25 @@ TEST_F(ShownReport, says_so_where_disturbances_are_missing) {
     // The monitor's barrier can't be told from 0; the ball's is 0, and nothing puts it at risk.
     scene.objects[3].barrier_error_J = 2;
     const auto page = open(scene, R"(
+        out.about = document.getElementById('about').textContent;
         out.risk = document.getElementById('risk').textContent;
         is(document.getElementById('missing').textContent, 'Not shown: People walking by: it reaches nothing here. Wind: this run left it out. Walked floor: no floor was found that people could walk on.');
         is([...document.querySelectorAll('[data-field]')].filter(box => box.disabled)
             .map(box => box.dataset.field).join(' '), 'human wind walks');
     )");
-    EXPECT_THAT(page.data("risk"), Not(HasSubstr("left out")))
+    EXPECT_THAT(page.data("about"), Not(HasSubstr("left out")))
         << "whether there is wind the notes say: ";
-    EXPECT_THAT(page.data("risk"), HasSubstr("No floor was found on which people could walk"));
-    page.says(
-        "risk",
-        {"The 3 objects whose barrier is above its error, the riskiest first",
-         "2 more stand on edge", "1 of them perhaps medium or high",
-         "Of 1 more object at risk the scan hardly shows what holds it, or it stands on edge"});
+    page.says("about",
+              {"About this scan (3 notes)", "No floor was found on which people could walk"});
+    page.says("risk", {"To act on (1)", "To look at (1)",
+                       "Unsure what holds it; its fall can kill.Push it by hand"});
 }
 
 TEST_F(ShownReport, words_fit_the_numbers) {
     const auto page = open(test::SyntheticScene(0.2).make(), R"(
         is([[1, 2], [12345.25, 12345.75], [0.50001, 0.50002]]
             .map(([low, high]) => distinctNumbers(low, high).join(' ')).join(', '), '1 2, 12345 12346, 0.50001 0.50002');
-        is([[1, 1], [1, 2], [2, 2], [3, 8]]
-            .map(([shown, all]) => riskiestOf(shown, all, 'here')).join('; '), 'The one object here; The riskiest of the 2 objects here; The 2 objects here, the riskiest first; The 3 riskiest of the 8 objects here');
+        is([0, 1e-5, 0.031, 0.5, 1].map(chance => chanceText('human', chance)).join('; '), 'no walk; less than 1 in 10,000 walks; 1 in 32 walks; 5 in 10 walks; nearly every walk');
         const chart = energyChart([12345.75, 12345.5, 12345.25]);
         const curve = chart.querySelector('.curve').getAttribute('d').match(/[\d.]+ [\d.]+/g).map(at => Number(at.split(' ')[1]));
         const caption = [...chart.querySelectorAll('text')].find(text => text.textContent.startsWith('energy'));
