@@ -15,7 +15,7 @@ namespace {
 
 // What a stage does, short enough that the line fits on a terminal of 80 columns.
 const char* what_it_does(const std::string& stage) {
-    static constexpr std::array<std::pair<const char*, const char*>, 31> stages{
+    static constexpr std::array<std::pair<const char*, const char*>, 32> stages{
         {{"ingest", "reading the scan"},
          {"estimate", "measuring the scan"},
          {"sorting", "sorting the points into cubes on disk"},
@@ -41,6 +41,7 @@ const char* what_it_does(const std::string& stage) {
          {"borders", "finding what carries what"},
          {"supports", "measuring how far the objects reach"},
          {"barriers", "what it takes to upset each object"},
+         {"alternatives", "reading doubtful objects the other way"},
          {"falls", "seeing who passes where things would land"},
          {"gusts", "blowing harder and harder"},
          {"risk", "weighing disturbances by what they release"},

@@ -15,7 +15,7 @@ struct StageShares {
     std::array<double, 3> percent;
 };
 constexpr int none = -1;  // there is no such stage
-constexpr std::array<StageShares, 32> table{{
+constexpr std::array<StageShares, 33> table{{
     {"cache", {0, 0, 0}},
     {"sorting", {none, none, 1.2}},
     {"spacing", {none, none, 6.9}},
@@ -40,6 +40,7 @@ constexpr std::array<StageShares, 32> table{{
     {"borders", {1.7, 2.9, 0.7}},
     {"supports", {3.4, 10, 0.3}},
     {"barriers", {4.6, 7.8, 2.3}},
+    {"alternatives", {2.5, 1, 1.5}},
     {"field human", {1.9, 0.9, 3.9}},
     {"field wind", {1.5, 2.8, 0.4}},
     {"field earthquake", {11, 3.7, 12}},
