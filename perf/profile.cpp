@@ -130,20 +130,21 @@ void print_profile(const std::vector<StageProfile>& stages) {
     constexpr double mega = 1e6;
     const auto line = [&](const StageProfile& s, double share) {
         std::printf(
-            "%-18s %8.2f %8.2f %6.2f %5.1f %% %9.2f %9.2f %8.2f %10.0f %8.0f %10llu %8llu %9.1f "
-            "%9.1f %10.1f\n",
+            "%-18s %8.2f %8.2f %6.2f %5.1f %% %9.2f %9.2f %8.2f %10.0f %8.0f %10llu %8llu %8llu "
+            "%9.1f %9.1f %10.1f\n",
             s.name.c_str(), s.span.wall_s, s.span.cpu_s, ratio(s.span.cpu_s, s.span.wall_s),
             100 * share, s.kernels_s, s.kernels_cpu_s, s.waits_s,
             static_cast<double>(s.touched_bytes) / mega, static_cast<double>(s.peak_bytes) / mega,
             static_cast<unsigned long long>(s.counters.dispatches),
             static_cast<unsigned long long>(s.counters.submits),
+            static_cast<unsigned long long>(s.counters.waits),
             static_cast<double>(s.counters.bytes_written) / mega,
             static_cast<double>(s.counters.bytes_read) / mega,
             static_cast<double>(s.counters.bytes_bound) / mega);
     };
-    std::printf("%-18s %8s %8s %6s %7s %9s %9s %8s %10s %8s %10s %8s %9s %9s %10s\n", "stage",
+    std::printf("%-18s %8s %8s %6s %7s %9s %9s %8s %10s %8s %10s %8s %8s %9s %9s %10s\n", "stage",
                 "wall s", "cpu s", "cores", "share", "kernels s", "their cpu", "waits s",
-                "touched MB", "peak MB", "dispatches", "submits", "to dev MB", "back MB",
+                "touched MB", "peak MB", "dispatches", "submits", "waits", "to dev MB", "back MB",
                 "bound MB");
     StageProfile all;
     all.name = "all";
@@ -154,6 +155,7 @@ void print_profile(const std::vector<StageProfile>& stages) {
         all.peak_bytes = std::max(all.peak_bytes, s.peak_bytes);
         all.counters.dispatches += s.counters.dispatches;
         all.counters.submits += s.counters.submits;
+        all.counters.waits += s.counters.waits;
         all.counters.bytes_written += s.counters.bytes_written;
         all.counters.bytes_read += s.counters.bytes_read;
         all.counters.bytes_bound += s.counters.bytes_bound;

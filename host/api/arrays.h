@@ -49,7 +49,7 @@ class Bound {
 
   private:
     device::Buffer<Element> own_;
-    std::unique_ptr<device::Memory> adopted_;
+    device::MemoryPtr adopted_;
     device::Slice<Element> slice_;
 };
 

@@ -79,7 +79,8 @@ ThreadPool::Beside::~Beside() {
 }
 
 void ThreadPool::poll() {
-    if (!poll_ || std::this_thread::get_id() != polling_thread_) return;
+    if (std::this_thread::get_id() != polling_thread_.load(std::memory_order_relaxed)) return;
+    if (!poll_) return;
     const auto now = std::chrono::steady_clock::now();
     if (now - polled_ < between_polls) return;
     polled_ = now;
@@ -89,7 +90,7 @@ void ThreadPool::poll() {
 ThreadPool::Polling::Polling(ThreadPool& pool, std::function<void()> poll)
     : pool_(pool),
       outer_(std::exchange(pool.poll_, std::move(poll))),
-      outer_thread_(std::exchange(pool.polling_thread_, std::this_thread::get_id())) {
+      outer_thread_(pool.polling_thread_.exchange(std::this_thread::get_id())) {
     pool.polled_ = {};
 }
 

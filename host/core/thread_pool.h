@@ -111,7 +111,7 @@ class ThreadPool {
     bool stop_ = false;
     std::vector<std::thread> workers_;
     std::function<void()> poll_;
-    std::thread::id polling_thread_;
+    std::atomic<std::thread::id> polling_thread_;  // the only one that looks at poll_
     std::chrono::steady_clock::time_point polled_;
 };
 

@@ -30,14 +30,13 @@ void check(const OpenClDevice& device, cl_mem memory, std::uint64_t bytes,
 
 }  // namespace
 
-std::unique_ptr<Memory> adopt_buffer(Device& device, void* handle, std::uint64_t bytes,
-                                     const std::string& name) {
+MemoryPtr adopt_buffer(Device& device, void* handle, std::uint64_t bytes, const std::string& name) {
     if (auto* opencl = dynamic_cast<OpenClDevice*>(&device)) {
         check(*opencl, static_cast<cl_mem>(handle), bytes, name);
-        return std::make_unique<OpenClMemory>(*opencl, static_cast<cl_mem>(handle), bytes, name);
+        return {new OpenClMemory(*opencl, static_cast<cl_mem>(handle), bytes, name), {&device}};
     }
     if (auto* vulkan = dynamic_cast<VulkanDevice*>(&device)) {
-        return std::make_unique<VulkanMemory>(*vulkan, static_cast<VkBuffer>(handle), bytes, name);
+        return {new VulkanMemory(*vulkan, static_cast<VkBuffer>(handle), bytes, name), {&device}};
     }
     throw Error(ErrorKind::device, "buffer " + name + ": the " + to_string(device.info().backend) +
                                        " backend has no buffers; give an array in host memory");

@@ -70,21 +70,27 @@ bool bounds_check_wanted() {
     return true;
 }
 
-void run_checked(Device& device, std::vector<Dispatch> batch) {
-    std::vector<std::uint32_t> words((batch.size() + 1) * part_words);
-    const auto part = [&](std::size_t d) {
-        return std::span(words).subspan(d * part_words, part_words);
-    };
-    Buffer<std::uint32_t> memory(device, words.size(), "bounds check");
+BoundsCheck::BoundsCheck(Device& device, std::vector<Dispatch>& batch)
+    : words_((batch.size() + 1) * part_words), report_(device, words_.size(), "bounds check") {
     const auto bound = [&](std::size_t d) {
-        return memory.slice(d * part_words, part_words).range;
+        return report_.slice(d * part_words, part_words).range;
     };
-    for (std::size_t d = 0; d < batch.size(); ++d)
-        add_checks(batch[d], part(d), bound(d), bound(batch.size()));
-    memory.upload(words);
-    device.run(batch);
-    memory.download(words);
-    for (std::size_t d = 0; d < batch.size(); ++d) throw_if_found(*batch[d].kernel, part(d));
+    for (std::size_t d = 0; d < batch.size(); ++d) {
+        add_checks(batch[d], std::span(words_).subspan(d * part_words, part_words), bound(d),
+                   bound(batch.size()));
+        kernels_.push_back(batch[d].kernel);
+    }
+    report_.upload(words_);
+}
+
+void BoundsCheck::throw_if_found() {
+    report_.download(words_);
+    for (std::size_t d = 0; d < kernels_.size(); ++d)
+        device::throw_if_found(*kernels_[d], std::span(words_).subspan(d * part_words, part_words));
+}
+
+Memory& BoundsCheck::memory() const {
+    return *report_.slice(0, 0).range.memory;
 }
 
 }  // namespace topple::device

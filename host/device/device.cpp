@@ -7,6 +7,7 @@
 
 #include "core/thread_pool.h"
 #include "device/bounds_check.h"
+#include "device/timeline.h"
 #include "device/trace.h"
 #include "topple/error.h"
 #include "topple/kernels/queue.h"
@@ -42,8 +43,64 @@ InUse::~InUse() {
     device_.in_use_ = false;
 }
 
-Device::Device() : checks_bounds_(bounds_check_wanted()) {}
+Device::Device() : timeline_(std::make_unique<Timeline>()), checks_bounds_(bounds_check_wanted()) {}
 Device::~Device() = default;
+
+void Device::settle() noexcept {
+    while (timeline_->in_flight()) {
+        try {
+            timeline_->finish_all();
+        } catch (...) {  // from a poll: the batches go on all the same
+        }
+    }
+    timeline_->pool().limit(0);
+    trim();
+}
+
+bool Device::in_flight() const {
+    return timeline_->in_flight();
+}
+
+void Device::pool_memory() {
+    constexpr std::uint64_t most = 256u << 20;
+    timeline_->pool().limit(std::min(most, info_.limits.memory_bytes / 8));
+}
+
+void Device::trim() {
+    timeline_->pool().trim();
+}
+
+void GiveBack::operator()(Memory* memory) const noexcept {
+    device->give_back(std::unique_ptr<Memory>(memory));
+}
+
+void Device::give_back(std::unique_ptr<Memory> memory) noexcept {
+    try {
+        timeline_->give_back(std::move(memory));
+    } catch (...) {  // from a poll, which the next one tells again
+    }
+}
+
+MemoryPtr Device::allocate(std::uint64_t bytes, const std::string& name) {
+    check_allocation(bytes, name);
+    const std::uint64_t capacity = std::min(std::max(bytes, info_.limits.max_allocation_bytes),
+                                            timeline_->pool().capacity_for(bytes));
+    std::unique_ptr<Memory> memory = timeline_->pool().take(capacity);
+    if (!memory) {
+        try {
+            memory = make_memory(capacity, name);
+        } catch (const Error&) {
+            timeline_->finish_all();  // what is given back in flight is in the way, too
+            trim();
+            memory = make_memory(capacity, name);
+        }
+    }
+    memory->bytes_ = bytes;
+    memory->name_ = name;
+    memory->capacity_ = capacity;
+    memory->batch_ = 0;
+    return {memory.release(), {this}};
+}
 
 ThreadPool& Device::threads() {
     if (!threads_) threads_ = std::make_unique<ThreadPool>(0);
@@ -58,7 +115,8 @@ std::uint32_t Device::items_per_lane(const KernelSource& kernel) const {
 
 Counters Device::counters() const {
     return {counters_.dispatches,    counters_.submits,    counters_.kernel_builds,
-            counters_.bytes_written, counters_.bytes_read, counters_.bytes_bound};
+            counters_.bytes_written, counters_.bytes_read, counters_.bytes_bound,
+            counters_.waits};
 }
 
 void Device::record(std::shared_ptr<Trace> trace) {
@@ -103,6 +161,7 @@ void Device::copy(std::byte* to, const std::byte* from, std::uint64_t bytes) {
 
 void Device::write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
     check_own(to);
+    wait(to.batch_);
     const TraceSpan span(trace(), "write", to.name(), {{"bytes", from.size()}});
     if (std::byte* const address = to.in_place())
         copy(address + offset, from.data(), from.size());
@@ -113,6 +172,7 @@ void Device::write(Memory& to, std::uint64_t offset, std::span<const std::byte> 
 
 void Device::read(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
     check_own(from);
+    wait(from.batch_);
     const TraceSpan span(trace(), "read", from.name(), {{"bytes", to.size()}});
     if (const std::byte* const address = from.in_place())
         copy(to.data(), address + offset, to.size());
@@ -123,11 +183,58 @@ void Device::read(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
 
 void Device::fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) {
     check_own(memory);
+    wait(memory.batch_);
     const TraceSpan span(trace(), "fill", memory.name(), {{"bytes", bytes}});
     std::byte* const address = memory.in_place();
     if (!address) return fill_apart(memory, offset, bytes, word);
     auto* first = reinterpret_cast<std::uint32_t*>(address + offset);
     std::fill(first, first + bytes / sizeof(word), word);
+}
+
+std::byte* Device::host_view(Memory& memory) {
+    wait(memory.batch_);
+    return memory.host_address();
+}
+
+Event Device::submit(std::vector<Dispatch> batch) {
+    return start(std::move(batch), false);
+}
+
+void Device::run(std::vector<Dispatch> batch) {
+    start(std::move(batch), true).wait();
+}
+
+Event Device::start(std::vector<Dispatch> batch, bool at_once) {
+    if (batch.empty()) return {};
+    const TraceSpan span(trace(), "batch", batch.back().kernel->name,
+                         {{"dispatches", batch.size()}});
+    for (const Dispatch& dispatch : batch)
+        for (const BoundRange& range : dispatch.ranges) check_own(*range.memory);
+    timeline_->ended(0);  // lets go of what has ended, where nobody waits
+    auto checks = checks_bounds_ ? std::make_unique<BoundsCheck>(*this, batch) : nullptr;
+    std::vector<Memory*> bound;
+    for (const Dispatch& dispatch : batch)
+        for (const BoundRange& range : dispatch.ranges) bound.push_back(range.memory);
+    std::ranges::sort(bound);
+    bound.erase(std::ranges::unique(bound).begin(), bound.end());
+    return {*this, timeline_->begun(begin(std::move(batch), at_once), std::move(checks),
+                                    std::move(bound))};
+}
+
+void Device::wait(std::uint64_t batch) {
+    if (batch <= waited_) return;
+    timeline_->finish(batch);
+    waited_ = batch;
+    ++counters_.waits;
+    timeline_->throw_failure(batch);
+}
+
+void Event::wait() const {
+    if (device_) device_->wait(batch_);
+}
+
+bool Event::done() const {
+    return !device_ || device_->timeline_->ended(batch_);
 }
 
 void Device::check_own(const Memory& memory) const {
@@ -196,17 +303,12 @@ void Queue::check(const Dispatch& dispatch) const {
     }
 }
 
+Event Queue::submit() {
+    return device_.submit(take());
+}
+
 void Queue::run() {
-    if (dispatches_.empty()) return;
-    // Taken out first: a failed run must not leave its dispatches behind for the next one.
-    const std::vector<Dispatch> batch = std::move(dispatches_);
-    dispatches_.clear();
-    const TraceSpan span(device_.trace(), "batch", batch.back().kernel->name,
-                         {{"dispatches", batch.size()}});
-    if (device_.checks_bounds())
-        run_checked(device_, batch);
-    else
-        device_.run(batch);
+    device_.run(take());
 }
 
 }  // namespace topple::device

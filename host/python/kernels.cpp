@@ -95,7 +95,7 @@ void run_kernel(device::Device& device, const device::KernelSource& kernel,
     // everywhere; here one that forgets to look hits memory that nobody else has.
     const std::uint64_t spare =
         std::uint64_t{4} * kernel.group_size * device.items_per_lane(kernel);
-    std::vector<std::unique_ptr<device::Memory>> memory;
+    std::vector<device::MemoryPtr> memory;
     std::vector<device::BoundRange> ranges;
     for (std::size_t n = 0; n < arrays.size(); ++n) {
         memory.push_back(device.allocate(arrays[n].size() + spare, kernel.bindings[n].name));

@@ -38,9 +38,13 @@ void sample(device::Device& device, Result& result, unsigned runs,
 }
 
 device::Counters operator-(const device::Counters& a, const device::Counters& b) {
-    return {a.dispatches - b.dispatches,       a.submits - b.submits,
-            a.kernel_builds - b.kernel_builds, a.bytes_written - b.bytes_written,
-            a.bytes_read - b.bytes_read,       a.bytes_bound - b.bytes_bound};
+    return {a.dispatches - b.dispatches,
+            a.submits - b.submits,
+            a.kernel_builds - b.kernel_builds,
+            a.bytes_written - b.bytes_written,
+            a.bytes_read - b.bytes_read,
+            a.bytes_bound - b.bytes_bound,
+            a.waits - b.waits};
 }
 
 void Result::add(const Span& span, double runs) {

@@ -91,7 +91,7 @@ TEST_P(BoundsCheck, RefusesAKernelWithoutACheckedForm) {
     unchecked.checked = nullptr;
     std::vector<device::Dispatch> batch(1);
     batch[0].kernel = &unchecked;
-    EXPECT_EQ(message_of([&] { device::run_checked(*device, batch); }),
+    EXPECT_EQ(message_of([&] { device::BoundsCheck(*device, batch); }),
               "TOPPLE_CHECK=bounds: kernel bounds_probe was built without its checked form; "
               "configure the build with -DTOPPLE_CHECKED_KERNELS=ON");
 }

@@ -34,7 +34,7 @@ void use_buffers(device::Device& device, void* a, void* b, void* dst) {
     const auto in_a = device::adopt_buffer(device, a, buffer_bytes, "a"),
                in_b = device::adopt_buffer(device, b, buffer_bytes, "b"),
                out = device::adopt_buffer(device, dst, buffer_bytes, "dst");
-    const auto part = [](const std::unique_ptr<device::Memory>& memory, std::uint64_t from) {
+    const auto part = [](const device::MemoryPtr& memory, std::uint64_t from) {
         return device::Slice<float>{{memory.get(), from, 12}};
     };
     run_kernel<kernels::Triad>(device, 3,

@@ -5,11 +5,17 @@
 #include <atomic>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <new>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "core/thread_pool.h"
 #include "device/devices.h"
+#include "device/native/native_worker.h"
 #include "device/trace.h"
 #include "topple/error.h"
 
@@ -48,6 +54,22 @@ std::string cpu_name() {
 
 constexpr std::uint64_t least_items = 4096;  // 1 to 100 microseconds of work
 
+// Groups that a thread takes at a time: some chunks per thread, so that an uneven load evens out;
+// none so small that waking a thread takes longer.
+std::uint64_t chunk_of(const Dispatch& dispatch, const ThreadPool& pool) {
+    const KernelSource& kernel = *dispatch.kernel;
+    const std::uint64_t of_group = std::uint64_t{kernel.group_size} * kernel.items_native;
+    const std::uint64_t least =
+        kernel.per_group ? 1 : std::max<std::uint64_t>(1, least_items / of_group);
+    return std::max(least, dispatch.groups / (std::uint64_t{pool.threads()} * 16) + 1);
+}
+
+// A dispatch with the addresses of its ranges: the worker looks at no Memory, which is the host's.
+struct Call {
+    Dispatch dispatch;
+    std::vector<void*> addresses;
+};
+
 class NativeDevice final : public Device {
   public:
     explicit NativeDevice(unsigned threads) : pool_(threads) {
@@ -59,60 +81,94 @@ class NativeDevice final : public Device {
         info_.limits = {memory, memory, memory, 1024, 1u << 20};
         record(Trace::of_environment());
     }
+    ~NativeDevice() override { settle(); }
 
-    std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override {
-        if (bytes > info_.limits.max_allocation_bytes) {
-            throw OutOfMemory(ErrorKind::device,
-                              "buffer " + name + ": " + std::to_string(bytes) +
-                                  " bytes are more than the machine's memory of " +
-                                  std::to_string(info_.limits.memory_bytes) + " bytes");
-        }
-        return std::make_unique<NativeMemory>(*this, bytes, name);
-    }
     void prepare(const KernelSource&) override {}
     ThreadPool& threads() override { return pool_; }
 
-    void run(std::span<const Dispatch> dispatches) override {
-        std::vector<DispatchTime> times;
-        for (const Dispatch& dispatch : dispatches) {
-            const std::int64_t begin_ns = trace() ? to_ns(Trace::Clock::now()) : 0;
-            std::atomic<std::uint64_t> cpu_ns = 0;
-            std::vector<void*> addresses;
-            addresses.reserve(dispatch.ranges.size());
-            for (const BoundRange& range : dispatch.ranges) {
-                addresses.push_back(address(*range.memory) + range.offset);
-            }
-            const NativeEntry entry = best_entry(dispatch.kernel->native);
-            const NativeArgs args{addresses.data(), dispatch.params.data()};
-            // Some chunks per thread, so that an uneven load evens out; none so small that waking
-            // a thread takes longer.
-            const std::uint64_t of_group =
-                std::uint64_t{dispatch.kernel->group_size} * dispatch.kernel->items_native;
-            const std::uint64_t least =
-                dispatch.kernel->per_group ? 1 : std::max<std::uint64_t>(1, least_items / of_group);
-            const std::uint64_t chunk =
-                std::max(least, dispatch.groups / (std::uint64_t{pool_.threads()} * 16) + 1);
-            pool_.run(dispatch.groups, chunk, [&](std::uint64_t first, std::uint64_t last) {
-                const std::uint64_t before = trace() ? thread_cpu_ns() : 0;
-                entry(args, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
-                if (trace()) cpu_ns += thread_cpu_ns() - before;
-            });
-            if (trace()) times.push_back({begin_ns, to_ns(Trace::Clock::now()), cpu_ns});
-        }
-        if (!times.empty())
-            trace_dispatches(
-                dispatches, times,
-                Trace::Clock::time_point(std::chrono::nanoseconds(times.back().end_ns)));
-        count(dispatches);
+  private:
+    std::unique_ptr<Memory> make_memory(std::uint64_t bytes, const std::string& name) override {
+        return std::make_unique<NativeMemory>(*this, bytes, name);
+    }
+    void check_allocation(std::uint64_t bytes, const std::string& name) const override {
+        if (bytes <= info_.limits.max_allocation_bytes) return;
+        throw OutOfMemory(ErrorKind::device, "buffer " + name + ": " + std::to_string(bytes) +
+                                                 " bytes are more than the machine's memory of " +
+                                                 std::to_string(info_.limits.memory_bytes) +
+                                                 " bytes");
     }
 
-  private:
-    std::byte* address(Memory& memory) const {
-        check_own(memory);
-        return memory.host_address();
+    std::unique_ptr<Running> begin(std::vector<Dispatch> batch, bool at_once) override {
+        count(batch);
+        std::vector<Call> calls;
+        for (Dispatch& dispatch : batch) {
+            std::vector<void*> addresses;
+            for (const BoundRange& range : dispatch.ranges)
+                addresses.push_back(range.memory->host_address() + range.offset);
+            calls.push_back({std::move(dispatch), std::move(addresses)});
+        }
+        if (!in_flight() && (at_once || runs_here(calls))) {
+            run_calls(calls);
+            return nullptr;
+        }
+        return worker_->add([this, calls = std::move(calls)] { run_calls(calls); });
+    }
+
+    // Whether a batch is better run by the host: it ends before another thread would wake, there is
+    // no other thread, or a trace is to tell its time alone.
+    bool runs_here(const std::vector<Call>& calls) {
+        if (trace() || pool_.threads() == 1) return true;
+        std::uint64_t items = 0;
+        for (const auto& [dispatch, addresses] : calls) {
+            if (dispatch.kernel->per_group) items += least_items;  // may be any amount of work
+            items += dispatch.groups * dispatch.kernel->group_size * dispatch.kernel->items_native;
+        }
+        return items <= least_items || !has_worker();
+    }
+
+    bool has_worker() {
+        if (worker_) return true;
+        try {
+            worker_.emplace(pool_);
+        } catch (const std::system_error&) {  // the system has no more threads
+        }
+        return worker_.has_value();
+    }
+
+    void run_calls(const std::vector<Call>& calls) {
+        if (trace()) return run_timed(calls);
+        for (const Call& call : calls) run_call(call);
+    }
+
+    void run_call(const Call& call, std::atomic<std::uint64_t>* cpu_ns = nullptr) {
+        const Dispatch& dispatch = call.dispatch;
+        const NativeEntry entry = best_entry(dispatch.kernel->native);
+        const NativeArgs args{call.addresses.data(), dispatch.params.data()};
+        pool_.run(dispatch.groups, chunk_of(dispatch, pool_),
+                  [&](std::uint64_t first, std::uint64_t last) {
+                      const std::uint64_t before = cpu_ns ? thread_cpu_ns() : 0;
+                      entry(args, static_cast<std::uint32_t>(first),
+                            static_cast<std::uint32_t>(last));
+                      if (cpu_ns) *cpu_ns += thread_cpu_ns() - before;
+                  });
+    }
+
+    void run_timed(const std::vector<Call>& calls) {
+        std::vector<Dispatch> dispatches;
+        std::vector<DispatchTime> times;
+        for (const Call& call : calls) {
+            const std::int64_t begin_ns = to_ns(Trace::Clock::now());
+            std::atomic<std::uint64_t> cpu_ns = 0;
+            run_call(call, &cpu_ns);
+            times.push_back({begin_ns, to_ns(Trace::Clock::now()), cpu_ns});
+            dispatches.push_back(call.dispatch);
+        }
+        trace_dispatches(dispatches, times,
+                         Trace::Clock::time_point(std::chrono::nanoseconds(times.back().end_ns)));
     }
 
     ThreadPool pool_;
+    std::optional<NativeWorker> worker_;  // from the first batch that the host does not run
 };
 
 }  // namespace

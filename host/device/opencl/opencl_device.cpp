@@ -2,47 +2,49 @@
 #include "device/opencl/opencl_device.h"
 
 #include <algorithm>
+#include <exception>
+#include <utility>
 
 #include "device/opencl/opencl_error.h"
+#include "device/timeline.h"
 #include "device/trace.h"
 #include "topple/error.h"
 
 namespace topple::device {
 namespace {
 
-// Unmaps what a run uses and maps it again afterwards, also when the run fails.
-class Unmapped {
-  public:
-    explicit Unmapped(std::span<const Dispatch> dispatches) {
-        for (const Dispatch& dispatch : dispatches) {
-            for (const BoundRange& range : dispatch.ranges) {
-                auto* memory = static_cast<OpenClMemory*>(range.memory);
-                if (!memory->mapped()) continue;
-                memory->unmap();
-                memories_.push_back(memory);
-            }
-        }
-    }
-    ~Unmapped() {
-        for (OpenClMemory* memory : memories_) {
-            try {
-                memory->map();
-            } catch (const Error&) {  // the device is lost; the next use says so
-            }
-        }
-    }
-    Unmapped(const Unmapped&) = delete;
-    Unmapped& operator=(const Unmapped&) = delete;
-
-  private:
-    std::vector<OpenClMemory*> memories_;
-};
-
 std::string ending_in(std::span<const Dispatch> dispatches) {
     return dispatches.empty()
                ? "empty batch"
                : std::string("batch ending in kernel ") + dispatches.back().kernel->name;
 }
+
+class OpenClBatch final : public Running {
+  public:
+    // Whose last dispatch has that event.
+    OpenClBatch(std::string what, ClEvent last, std::vector<ClMem> parts)
+        : what_(std::move(what)), last_(std::move(last)), parts_(std::move(parts)) {}
+    bool ended() override {
+        cl_int status = CL_COMPLETE;
+        const cl_int code = clGetEventInfo(last_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS,
+                                           sizeof(status), &status, nullptr);
+        return code != CL_SUCCESS || status <= CL_COMPLETE;  // below: an error, which wait() tells
+    }
+    std::exception_ptr wait() override {
+        try {
+            const cl_event last = last_.get();
+            cl_check(clWaitForEvents(1, &last), what_);
+        } catch (const Error&) {
+            return std::current_exception();
+        }
+        return nullptr;
+    }
+
+  private:
+    std::string what_;
+    ClEvent last_;
+    std::vector<ClMem> parts_;  // of buffers
+};
 
 std::string one_line(std::string text) {
     while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.pop_back();
@@ -72,32 +74,32 @@ OpenClDevice::OpenClDevice(std::unique_ptr<OpenClContext> context) : context_(st
     if (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) {
         build_options_ += " -cl-fp32-correctly-rounded-divide-sqrt";
     }
+    pool_memory();
     record(Trace::of_environment());
 }
 
-std::unique_ptr<Memory> OpenClDevice::allocate(std::uint64_t bytes, const std::string& name) {
-    check_allocation(bytes, name);
+std::unique_ptr<Memory> OpenClDevice::make_memory(std::uint64_t bytes, const std::string& name) {
     return std::make_unique<OpenClMemory>(*this, bytes, name);
 }
 
 void OpenClDevice::send(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
-    cl_check(clEnqueueWriteBuffer(context_->queue, own<OpenClMemory>(to).buffer(), CL_TRUE, offset,
-                                  from.size(), from.data(), 0, nullptr, nullptr),
+    cl_check(clEnqueueWriteBuffer(context_->transfers, own<OpenClMemory>(to).buffer(), CL_TRUE,
+                                  offset, from.size(), from.data(), 0, nullptr, nullptr),
              "writing buffer " + to.name());
 }
 
 void OpenClDevice::fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) {
-    cl_check(clEnqueueReadBuffer(context_->queue, own<OpenClMemory>(from).buffer(), CL_TRUE, offset,
-                                 to.size(), to.data(), 0, nullptr, nullptr),
+    cl_check(clEnqueueReadBuffer(context_->transfers, own<OpenClMemory>(from).buffer(), CL_TRUE,
+                                 offset, to.size(), to.data(), 0, nullptr, nullptr),
              "reading buffer " + from.name());
 }
 
 void OpenClDevice::fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
                               std::uint32_t word) {
-    cl_check(clEnqueueFillBuffer(context_->queue, own<OpenClMemory>(memory).buffer(), &word,
+    cl_check(clEnqueueFillBuffer(context_->transfers, own<OpenClMemory>(memory).buffer(), &word,
                                  sizeof(word), offset, bytes, 0, nullptr, nullptr),
              "filling buffer " + memory.name());
-    cl_check(clFinish(context_->queue), "filling buffer " + memory.name());
+    cl_check(clFinish(context_->transfers), "filling buffer " + memory.name());
 }
 
 void OpenClDevice::prepare(const KernelSource& source) {
@@ -149,12 +151,13 @@ OpenClDevice::Built OpenClDevice::build(const KernelSource& source) const {
     throw Error(ErrorKind::device, where + " does not build for " + info_.name + ": " + why);
 }
 
-void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts, cl_event* event) {
+ClEvent OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts) {
     const std::string where = std::string("kernel ") + dispatch.kernel->name;
     const cl_kernel kernel_handle = kernel(*dispatch.kernel);
     cl_uint index = 0;
     for (const BoundRange& range : dispatch.ranges) {
-        const OpenClMemory& memory = own<OpenClMemory>(*range.memory);
+        auto& memory = own<OpenClMemory>(*range.memory);
+        memory.unmap();
         cl_mem buffer = memory.buffer();
         if (range.offset != 0 || range.bytes != memory.bytes()) {
             const cl_buffer_region region{range.offset, std::max<std::size_t>(4, range.bytes)};
@@ -170,9 +173,11 @@ void OpenClDevice::enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts, 
              where + ": parameters");
     const std::size_t local = dispatch.kernel->group_size;
     const std::size_t global = dispatch.groups * local;
+    cl_event event = nullptr;
     cl_check(clEnqueueNDRangeKernel(context_->queue, kernel_handle, 1, nullptr, &global, &local, 0,
-                                    nullptr, event),
+                                    nullptr, &event),
              where);
+    return ClEvent(event);
 }
 
 void OpenClDevice::finish(const std::string& what) {
@@ -193,11 +198,8 @@ void OpenClDevice::run_timed(std::span<const Dispatch> dispatches, std::vector<C
     std::vector<DispatchTime> times;
     for (const Dispatch& dispatch : dispatches) {
         const std::int64_t begin_ns = to_ns(Trace::Clock::now());
-        cl_event event = nullptr;
-        enqueue(dispatch, parts, profiles_ ? &event : nullptr);
-        if (profiles_) {
-            events.emplace_back(event);
-        } else {
+        events.push_back(enqueue(dispatch, parts));
+        if (!profiles_) {
             finish(std::string("kernel ") + dispatch.kernel->name);
             times.push_back({begin_ns, to_ns(Trace::Clock::now())});
         }
@@ -205,10 +207,10 @@ void OpenClDevice::run_timed(std::span<const Dispatch> dispatches, std::vector<C
     if (profiles_) finish(ending_in(dispatches));
     const auto ended = Trace::Clock::now();
     const std::uint64_t cpu_ns = process_cpu_ns() - cpu_before;
-    for (const ClEvent& event : events) {
+    for (std::size_t e = 0; profiles_ && e < events.size(); ++e) {
         const auto at = [&](cl_profiling_info what) {
             cl_ulong ns = 0;
-            cl_check(clGetEventProfilingInfo(event.get(), what, sizeof(ns), &ns, nullptr),
+            cl_check(clGetEventProfilingInfo(events[e].get(), what, sizeof(ns), &ns, nullptr),
                      "time of a kernel");
             return static_cast<std::int64_t>(ns);
         };
@@ -218,26 +220,30 @@ void OpenClDevice::run_timed(std::span<const Dispatch> dispatches, std::vector<C
     trace_dispatches(dispatches, times, ended);
 }
 
-void OpenClDevice::run(std::span<const Dispatch> dispatches) {
-    for (const Dispatch& dispatch : dispatches) {
-        for (const BoundRange& range : dispatch.ranges) check_own(*range.memory);
-        kernel(*dispatch.kernel);
-    }
-    const Unmapped unmapped(dispatches);
+std::unique_ptr<Running> OpenClDevice::begin(std::vector<Dispatch> batch, bool) {
+    // All that can be wrong with a batch is found before any of it runs.
+    for (const Dispatch& dispatch : batch) kernel(*dispatch.kernel);
     std::vector<ClMem> parts;
+    std::unique_ptr<Running> running;
     // In-order: each dispatch sees what the ones before it wrote.
     try {
         if (trace()) {
-            run_timed(dispatches, parts);
+            run_timed(batch, parts);
         } else {
-            for (const Dispatch& dispatch : dispatches) enqueue(dispatch, parts, nullptr);
-            finish(ending_in(dispatches));
+            ClEvent last;
+            for (const Dispatch& dispatch : batch) last = enqueue(dispatch, parts);
+            cl_check(clFlush(context_->queue), ending_in(batch));
+            running =
+                std::make_unique<OpenClBatch>(ending_in(batch), std::move(last), std::move(parts));
         }
     } catch (const Error&) {
         clFinish(context_->queue);
+        for (const Dispatch& dispatch : batch)
+            for (const BoundRange& range : dispatch.ranges) range.memory->batch_ended();
         throw;
     }
-    count(dispatches);
+    count(batch);
+    return running;
 }
 
 }  // namespace topple::device

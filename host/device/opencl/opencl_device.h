@@ -24,11 +24,15 @@ using ClKernel = std::unique_ptr<_cl_kernel, ClRelease<cl_kernel, clReleaseKerne
 using ClEvent = std::unique_ptr<_cl_event, ClRelease<cl_event, clReleaseEvent>>;
 using ClMem = std::unique_ptr<_cl_mem, ClRelease<cl_mem, clReleaseMemObject>>;
 
-// A context, one device and one in-order queue, released at the end only where `owned`.
+// A context, one device and its in-order queues, released at the end only where `owned`.
 struct OpenClContext {
     cl_context context = nullptr;
     cl_device_id device = nullptr;
-    cl_command_queue queue = nullptr;
+    cl_command_queue queue = nullptr;  // of the batches
+    // Of what the host reads, writes and maps, which so waits for no batch but those that it has to
+    // wait for before. With a caller's handles the same as the other: what they enqueue there goes
+    // before all of ours.
+    cl_command_queue transfers = nullptr;
     bool owned = false;
 
     OpenClContext() = default;
@@ -53,15 +57,16 @@ class OpenClMemory final : public Memory {
                  const std::string& name);
     ~OpenClMemory() override;
 
-    // Maps the buffer until the next run that uses it, which unmaps it meanwhile: OpenCL leaves a
-    // kernel's access to a mapped buffer undefined. The address stays the same, since the buffer
-    // lies in memory of ours (OpenCL 1.2, 5.4.3).
+    // Maps the buffer from here on, but for while a batch binds it: OpenCL leaves a kernel's access
+    // to a mapped buffer undefined. The address stays the same, since the buffer lies in memory of
+    // ours (OpenCL 1.2, 5.4.3).
     std::byte* host_address() override;
     std::byte* in_place() override { return mapped_ ? host_.get() : nullptr; }
+    void batch_ended() override;
+    void given_back() override;
 
-    void map();
+    // For a batch, on its queue.
     void unmap();
-    bool mapped() const { return mapped_; }
     cl_mem buffer() const { return buffer_; }
 
   private:
@@ -71,21 +76,24 @@ class OpenClMemory final : public Memory {
     const OpenClContext& context_;
     std::unique_ptr<std::byte, Free> host_;  // null where the device has memory of its own
     cl_mem buffer_ = nullptr;
-    bool mapped_ = false;
+    bool mapped_ = false, viewed_ = false;  // viewed: by the holder, at any time
+    void map();
 };
 
 class OpenClDevice final : public Device {
   public:
     explicit OpenClDevice(std::unique_ptr<OpenClContext> context);
 
-    std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override;
-    void run(std::span<const Dispatch> dispatches) override;
+    ~OpenClDevice() override { settle(); }
+
     void prepare(const KernelSource& kernel) override;
 
     const OpenClContext& handles() const { return *context_; }
     bool shares_host_memory() const { return shares_host_memory_; }
 
   private:
+    std::unique_ptr<Memory> make_memory(std::uint64_t bytes, const std::string& name) override;
+    std::unique_ptr<Running> begin(std::vector<Dispatch> batch, bool at_once) override;
     void send(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override;
     void fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) override;
     void fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
@@ -97,7 +105,7 @@ class OpenClDevice final : public Device {
     };
     cl_kernel kernel(const KernelSource& source);
     Built build(const KernelSource& source) const;
-    void enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts, cl_event* event);
+    ClEvent enqueue(const Dispatch& dispatch, std::vector<ClMem>& parts);
     void finish(const std::string& what);
     void run_timed(std::span<const Dispatch> dispatches, std::vector<ClMem>& parts);
 

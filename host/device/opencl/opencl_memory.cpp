@@ -37,23 +37,37 @@ OpenClMemory::OpenClMemory(const OpenClDevice& device, cl_mem buffer, std::uint6
 }
 
 OpenClMemory::~OpenClMemory() {
-    if (mapped_) {
-        clEnqueueUnmapMemObject(context_.queue, buffer_, host_.get(), 0, nullptr, nullptr);
-        clFinish(context_.queue);
-    }
+    given_back();
     clReleaseMemObject(buffer_);
 }
 
 std::byte* OpenClMemory::host_address() {
     if (!host_) return nullptr;
+    viewed_ = true;
     map();
     return host_.get();
+}
+
+void OpenClMemory::batch_ended() {
+    if (!viewed_) return;
+    try {
+        map();
+    } catch (const Error&) {  // the device is lost; the next use says so
+    }
+}
+
+void OpenClMemory::given_back() {
+    viewed_ = false;
+    if (!mapped_) return;
+    clEnqueueUnmapMemObject(context_.transfers, buffer_, host_.get(), 0, nullptr, nullptr);
+    clFinish(context_.transfers);
+    mapped_ = false;
 }
 
 void OpenClMemory::map() {
     if (mapped_) return;
     cl_int code = CL_SUCCESS;
-    clEnqueueMapBuffer(context_.queue, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+    clEnqueueMapBuffer(context_.transfers, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
                        bytes() + opencl_tail, 0, nullptr, nullptr, &code);
     cl_check(code, "mapping buffer " + name());
     mapped_ = true;

@@ -88,6 +88,8 @@ std::unique_ptr<OpenClContext> make_context(const Found& found) {
     cl_check(code, where + ": context");
     made->queue = clCreateCommandQueue(made->context, found.device, 0, &code);
     cl_check(code, where + ": queue");
+    made->transfers = clCreateCommandQueue(made->context, found.device, 0, &code);
+    cl_check(code, where + ": queue for transfers");
     return made;
 }
 
@@ -96,6 +98,7 @@ std::unique_ptr<OpenClContext> make_context(const Found& found) {
 OpenClContext::~OpenClContext() {
     if (!owned) return;
     const std::lock_guard lock(drivers);
+    if (transfers) clReleaseCommandQueue(transfers);
     if (queue) clReleaseCommandQueue(queue);
     if (context) clReleaseContext(context);
 }
@@ -167,7 +170,7 @@ std::shared_ptr<Device> adopt_opencl(const OpenClHandles& handles) {
     auto given = std::make_unique<OpenClContext>();
     given->context = static_cast<cl_context>(handles.context);
     given->device = static_cast<cl_device_id>(handles.device_id);
-    given->queue = static_cast<cl_command_queue>(handles.queue);
+    given->queue = given->transfers = static_cast<cl_command_queue>(handles.queue);
     if (!given->context || !given->device || !given->queue) {
         throw Error(ErrorKind::device,
                     "adopt_opencl needs a context, a device and a queue, none of them null");

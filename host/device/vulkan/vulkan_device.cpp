@@ -2,8 +2,11 @@
 #include "device/vulkan/vulkan_device.h"
 
 #include <algorithm>
+#include <exception>
+#include <utility>
 
 #include "device/devices.h"
+#include "device/timeline.h"
 #include "device/trace.h"
 #include "device/vulkan/vulkan_error.h"
 #include "topple/embed.h"
@@ -29,21 +32,13 @@ VulkanDevice::VulkanDevice(std::unique_ptr<VulkanContext> context, const VulkanO
     pool.queueFamilyIndex = context_->queue_family;
     command_pool_ = vk_make(context_->device, vkCreateCommandPool, vkDestroyCommandPool, pool,
                             info_.name + ": command pool");
-    auto buffer =
-        vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    buffer.commandPool = command_pool_.get();
-    buffer.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    buffer.commandBufferCount = 1;
-    vk_check(vkAllocateCommandBuffers(context_->device, &buffer, &commands_),
-             info_.name + ": command buffer");
-    const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
-    fence_ =
-        vk_make(context_->device, vkCreateFence, vkDestroyFence, fence, info_.name + ": fence");
+    pool_memory();
     if (!unified_) staging_ = create_staging(options_.staging_bytes);
     record(Trace::of_environment());
 }
 
 VulkanDevice::~VulkanDevice() {
+    settle();
     vkQueueWaitIdle(context_->queue);
 }
 
@@ -129,34 +124,37 @@ VulkanDevice::Built VulkanDevice::build(const KernelSource& source) const {
 }
 
 // Makes room for one descriptor set per dispatch; the pool only grows.
-void VulkanDevice::reserve_descriptors(std::span<const Dispatch> dispatches) {
+void VulkanDevice::reserve_descriptors(VulkanCommands& commands,
+                                       std::span<const Dispatch> dispatches) {
     std::uint32_t descriptors = 1;
     for (const Dispatch& dispatch : dispatches) {
         descriptors += static_cast<std::uint32_t>(dispatch.ranges.size());
     }
     const auto sets = static_cast<std::uint32_t>(dispatches.size());
-    if (descriptor_pool_ && sets <= pool_sets_ && descriptors <= pool_descriptors_) {
-        vk_check(vkResetDescriptorPool(context_->device, descriptor_pool_.get(), 0),
+    if (commands.descriptors && sets <= commands.most_sets &&
+        descriptors <= commands.most_descriptors) {
+        vk_check(vkResetDescriptorPool(context_->device, commands.descriptors.get(), 0),
                  "descriptor pool");
         return;
     }
-    descriptor_pool_.reset();
-    pool_sets_ = std::max(2 * pool_sets_, sets);
-    pool_descriptors_ = std::max(2 * pool_descriptors_, descriptors);
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, pool_descriptors_};
+    commands.descriptors.reset();
+    commands.most_sets = std::max(2 * commands.most_sets, sets);
+    commands.most_descriptors = std::max(2 * commands.most_descriptors, descriptors);
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, commands.most_descriptors};
     auto info =
         vk_struct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-    info.maxSets = pool_sets_;
+    info.maxSets = commands.most_sets;
     info.poolSizeCount = 1;
     info.pPoolSizes = &size;
-    descriptor_pool_ = vk_make(context_->device, vkCreateDescriptorPool, vkDestroyDescriptorPool,
-                               info, "descriptor pool");
+    commands.descriptors = vk_make(context_->device, vkCreateDescriptorPool,
+                                   vkDestroyDescriptorPool, info, "descriptor pool");
 }
 
-VkDescriptorSet VulkanDevice::describe(const Dispatch& dispatch, const Built& built) {
+VkDescriptorSet VulkanDevice::describe(const VulkanCommands& commands, const Dispatch& dispatch,
+                                       const Built& built) {
     auto info =
         vk_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    info.descriptorPool = descriptor_pool_.get();
+    info.descriptorPool = commands.descriptors.get();
     info.descriptorSetCount = 1;
     const VkDescriptorSetLayout layout = built.set_layout.get();
     info.pSetLayouts = &layout;
@@ -181,15 +179,35 @@ VkDescriptorSet VulkanDevice::describe(const Dispatch& dispatch, const Built& bu
     return set;
 }
 
-void VulkanDevice::begin() {
-    auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
-    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    vk_check(vkBeginCommandBuffer(commands_, &info), info_.name + ": command buffer");
+VulkanCommands VulkanDevice::new_commands() const {
+    VulkanCommands made;
+    auto buffer =
+        vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    buffer.commandPool = command_pool_.get();
+    buffer.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    buffer.commandBufferCount = 1;
+    vk_check(vkAllocateCommandBuffers(context_->device, &buffer, &made.buffer),
+             info_.name + ": command buffer");
+    const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
+    made.fence =
+        vk_make(context_->device, vkCreateFence, vkDestroyFence, fence, info_.name + ": fence");
+    return made;
 }
 
-// Ends the commands, submits them and waits. What they wrote is visible to host, kernels and
-// copies.
-void VulkanDevice::submit(const std::string& what) {
+// Begun, and empty.
+VulkanCommands VulkanDevice::take_commands() {
+    if (spare_.empty()) spare_.push_back(new_commands());
+    VulkanCommands commands = std::move(spare_.back());
+    spare_.pop_back();
+    auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    vk_check(vkBeginCommandBuffer(commands.buffer, &info), info_.name + ": command buffer");
+    return commands;
+}
+
+// Ends the commands and submits them. What they wrote is visible to host, kernels and copies that
+// come later.
+void VulkanDevice::submit(VulkanCommands& commands, const std::string& what) {
     const VkMemoryBarrier written{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr,
                                   VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
                                   VK_ACCESS_HOST_READ_BIT | VK_ACCESS_HOST_WRITE_BIT |
@@ -197,39 +215,80 @@ void VulkanDevice::submit(const std::string& what) {
                                       VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT};
     const VkPipelineStageFlags device_stages =
         VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    vkCmdPipelineBarrier(commands_, device_stages, device_stages | VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                         &written, 0, nullptr, 0, nullptr);
-    vk_check(vkEndCommandBuffer(commands_), what);
+    vkCmdPipelineBarrier(commands.buffer, device_stages, device_stages | VK_PIPELINE_STAGE_HOST_BIT,
+                         0, 1, &written, 0, nullptr, 0, nullptr);
+    vk_check(vkEndCommandBuffer(commands.buffer), what);
     auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
     info.commandBufferCount = 1;
-    info.pCommandBuffers = &commands_;
-    const VkFence fence = fence_.get();
+    info.pCommandBuffers = &commands.buffer;
+    const VkFence fence = commands.fence.get();
     vk_check(vkResetFences(context_->device, 1, &fence), what);
     vk_check(vkQueueSubmit(context_->queue, 1, &info, fence), what);
-    const TraceSpan span(trace(), "wait", what);
-    vk_check(vkWaitForFences(context_->device, 1, &fence, VK_TRUE, UINT64_MAX), what);
-    check_validation(what);
+    commands.what = what;
 }
 
-void VulkanDevice::add_commands(const Dispatch& dispatch) {
+void VulkanDevice::wait(const VulkanCommands& commands) {
+    const TraceSpan span(trace(), "wait", commands.what);
+    const VkFence fence = commands.fence.get();
+    vk_check(vkWaitForFences(context_->device, 1, &fence, VK_TRUE, UINT64_MAX), commands.what);
+    check_validation(commands.what);
+}
+
+void VulkanDevice::submit_and_wait(VulkanCommands commands, const std::string& what) {
+    submit(commands, what);
+    wait(commands);
+    spare_.push_back(std::move(commands));
+}
+
+// The parts of a batch, in order.
+class VulkanDevice::Batch final : public Running {
+  public:
+    explicit Batch(VulkanDevice& device) : device_(device) {}
+    ~Batch() override {
+        for (VulkanCommands& part : parts) device_.spare_.push_back(std::move(part));
+    }
+    bool ended() override {
+        return vkGetFenceStatus(device_.context_->device, parts.back().fence.get()) != VK_NOT_READY;
+    }
+    std::exception_ptr wait() override {
+        std::exception_ptr error;
+        for (const VulkanCommands& part : parts) {
+            try {
+                device_.wait(part);
+            } catch (const Error&) {
+                if (!error) error = std::current_exception();
+            }
+        }
+        return error;
+    }
+
+    std::vector<VulkanCommands> parts;
+
+  private:
+    VulkanDevice& device_;
+};
+
+void VulkanDevice::add_commands(const VulkanCommands& commands, const Dispatch& dispatch) {
     const Built& built = kernel(*dispatch.kernel);
-    const VkDescriptorSet set = describe(dispatch, built);
-    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.pipeline.get());
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.layout.get(), 0, 1,
-                            &set, 0, nullptr);
-    vkCmdPushConstants(commands_, built.layout.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+    const VkDescriptorSet set = describe(commands, dispatch, built);
+    vkCmdBindPipeline(commands.buffer, VK_PIPELINE_BIND_POINT_COMPUTE, built.pipeline.get());
+    vkCmdBindDescriptorSets(commands.buffer, VK_PIPELINE_BIND_POINT_COMPUTE, built.layout.get(), 0,
+                            1, &set, 0, nullptr);
+    vkCmdPushConstants(commands.buffer, built.layout.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
                        static_cast<std::uint32_t>(dispatch.params.size()), dispatch.params.data());
     for (std::uint64_t first = 0; first < dispatch.groups; first += max_groups_) {
         const std::uint64_t count = std::min<std::uint64_t>(max_groups_, dispatch.groups - first);
-        vkCmdDispatchBase(commands_, static_cast<std::uint32_t>(first), 0, 0,
+        vkCmdDispatchBase(commands.buffer, static_cast<std::uint32_t>(first), 0, 0,
                           static_cast<std::uint32_t>(count), 1, 1);
     }
 }
 
-void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
-    reserve_descriptors(dispatches);
-    begin();
-    if (timestamps_) timestamps_->begin(commands_, static_cast<std::uint32_t>(dispatches.size()));
+// With a trace, waits: the timestamps are those of one part.
+VulkanCommands VulkanDevice::begin_part(std::span<const Dispatch> dispatches) {
+    VulkanCommands commands = take_commands();
+    reserve_descriptors(commands, dispatches);
+    if (timestamps_)
+        timestamps_->begin(commands.buffer, static_cast<std::uint32_t>(dispatches.size()));
     const std::uint64_t cpu_before = trace() ? process_cpu_ns() : 0;
     const std::int64_t begin_ns = trace() ? to_ns(Trace::Clock::now()) : 0;
     const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr,
@@ -237,18 +296,19 @@ void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
                                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT};
     for (std::size_t i = 0; i < dispatches.size(); ++i) {
         if (i > 0) {
-            vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+            vkCmdPipelineBarrier(commands.buffer, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                                  VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &barrier, 0, nullptr,
                                  0, nullptr);
         }
-        add_commands(dispatches[i]);
-        if (timestamps_) timestamps_->mark(commands_);
+        add_commands(commands, dispatches[i]);
+        if (timestamps_) timestamps_->mark(commands.buffer);
     }
-    submit(dispatches.size() == 1
-               ? std::string("kernel ") + dispatches[0].kernel->name
-               : "batch of " + std::to_string(dispatches.size()) +
-                     " dispatches, the last of kernel " + dispatches.back().kernel->name);
+    submit(commands, dispatches.size() == 1
+                         ? std::string("kernel ") + dispatches[0].kernel->name
+                         : "batch of " + std::to_string(dispatches.size()) +
+                               " dispatches, the last of kernel " + dispatches.back().kernel->name);
     if (trace()) {
+        wait(commands);
         const auto ended = Trace::Clock::now();
         std::vector<DispatchTime> times{{begin_ns, to_ns(ended)}};
         if (timestamps_) times = timestamps_->times();
@@ -256,6 +316,7 @@ void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
         trace_dispatches(dispatches, times, ended);
     }
     count(dispatches);
+    return commands;
 }
 
 std::string VulkanDevice::time_dispatches() {
@@ -268,18 +329,24 @@ std::string VulkanDevice::time_dispatches() {
     return "the host's clock, one by one: the queue writes no timestamps";
 }
 
-void VulkanDevice::run(std::span<const Dispatch> dispatches) {
+std::unique_ptr<Running> VulkanDevice::begin(std::vector<Dispatch> batch, bool) {
     // All that can be wrong with a batch is found before any of it runs.
-    for (const Dispatch& dispatch : dispatches) {
-        for (const BoundRange& range : dispatch.ranges) check_own(*range.memory);
-        kernel(*dispatch.kernel);
+    for (const Dispatch& dispatch : batch) kernel(*dispatch.kernel);
+    auto running = std::make_unique<Batch>(*this);
+    std::span<const Dispatch> left = batch;
+    try {
+        while (!left.empty()) {
+            const std::size_t count =
+                std::min<std::size_t>(left.size(), options_.dispatches_per_submit);
+            running->parts.push_back(begin_part(left.first(count)));
+            left = left.subspan(count);
+        }
+    } catch (const Error&) {
+        vkQueueWaitIdle(context_->queue);
+        throw;
     }
-    while (!dispatches.empty()) {
-        const std::size_t count =
-            std::min<std::size_t>(dispatches.size(), options_.dispatches_per_submit);
-        run_batch(dispatches.first(count));
-        dispatches = dispatches.subspan(count);
-    }
+    if (trace()) return nullptr;
+    return running;
 }
 
 std::unique_ptr<Device> open_vulkan() {

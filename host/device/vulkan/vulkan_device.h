@@ -34,6 +34,15 @@ struct VulkanBuffer {
     std::byte* mapped = nullptr;
 };
 
+// Commands on their way through the queue, and what they need until they have ended.
+struct VulkanCommands {
+    VkCommandBuffer buffer = VK_NULL_HANDLE;  // of the device's pool
+    VulkanHandle<VkFence> fence;
+    VulkanHandle<VkDescriptorPool> descriptors;
+    std::uint32_t most_sets = 0, most_descriptors = 0;
+    std::string what;  // for messages
+};
+
 class VulkanDevice;
 
 class VulkanMemory final : public Memory {
@@ -57,8 +66,6 @@ class VulkanDevice final : public Device {
                           const VulkanOptions& options = {});
     ~VulkanDevice() override;
 
-    std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override;
-    void run(std::span<const Dispatch> dispatches) override;
     void prepare(const KernelSource& kernel) override;
 
     // Whether the validation layers watch.
@@ -69,6 +76,9 @@ class VulkanDevice final : public Device {
     VulkanBuffer create_staging(std::uint64_t bytes) const;
 
   private:
+    class Batch;
+    std::unique_ptr<Memory> make_memory(std::uint64_t bytes, const std::string& name) override;
+    std::unique_ptr<Running> begin(std::vector<Dispatch> batch, bool at_once) override;
     void send(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override;
     void fetch(Memory& from, std::uint64_t offset, std::span<std::byte> to) override;
     void fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
@@ -86,12 +96,16 @@ class VulkanDevice final : public Device {
                              VkMemoryPropertyFlags preferred) const;
     const Built& kernel(const KernelSource& source);
     Built build(const KernelSource& source) const;
-    void reserve_descriptors(std::span<const Dispatch> dispatches);
-    VkDescriptorSet describe(const Dispatch& dispatch, const Built& built);
-    void add_commands(const Dispatch& dispatch);
-    void run_batch(std::span<const Dispatch> dispatches);
-    void begin();
-    void submit(const std::string& what);
+    void reserve_descriptors(VulkanCommands& commands, std::span<const Dispatch> dispatches);
+    VkDescriptorSet describe(const VulkanCommands& commands, const Dispatch& dispatch,
+                             const Built& built);
+    void add_commands(const VulkanCommands& commands, const Dispatch& dispatch);
+    VulkanCommands begin_part(std::span<const Dispatch> dispatches);
+    VulkanCommands new_commands() const;
+    VulkanCommands take_commands();
+    void submit(VulkanCommands& commands, const std::string& what);
+    void wait(const VulkanCommands& commands);
+    void submit_and_wait(VulkanCommands commands, const std::string& what);
     void copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to, std::uint64_t to_offset,
               std::uint64_t bytes, const std::string& what);
     void check_validation(const std::string& what);
@@ -102,10 +116,7 @@ class VulkanDevice final : public Device {
     std::uint32_t max_groups_ = 0;
     VkPhysicalDeviceMemoryProperties memory_{};
     VulkanHandle<VkCommandPool> command_pool_;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;  // of the pool
-    VulkanHandle<VkFence> fence_;
-    VulkanHandle<VkDescriptorPool> descriptor_pool_;
-    std::uint32_t pool_sets_ = 0, pool_descriptors_ = 0;
+    std::vector<VulkanCommands> spare_;           // that have ended
     std::optional<VulkanTimestamps> timestamps_;  // where they are recorded, and the queue has any
     VulkanBuffer staging_;
     std::map<const KernelSource*, Built> kernels_;  // looked up only, never iterated for a result

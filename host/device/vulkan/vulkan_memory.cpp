@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "device/vulkan/vulkan_device.h"
 #include "device/vulkan/vulkan_error.h"
@@ -27,8 +28,7 @@ VulkanMemory::VulkanMemory(const VulkanDevice& device, VkBuffer buffer, std::uin
                            const std::string& name)
     : Memory(device, bytes, name), buffer_(buffer) {}
 
-std::unique_ptr<Memory> VulkanDevice::allocate(std::uint64_t bytes, const std::string& name) {
-    check_allocation(bytes, name);
+std::unique_ptr<Memory> VulkanDevice::make_memory(std::uint64_t bytes, const std::string& name) {
     return std::make_unique<VulkanMemory>(*this, bytes, name);
 }
 
@@ -88,10 +88,10 @@ VulkanBuffer VulkanDevice::create_buffer(std::uint64_t bytes, VkBufferUsageFlags
 
 void VulkanDevice::copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to,
                         std::uint64_t to_offset, std::uint64_t bytes, const std::string& what) {
-    begin();
+    VulkanCommands commands = take_commands();
     const VkBufferCopy region{from_offset, to_offset, bytes};
-    vkCmdCopyBuffer(commands_, from, to, 1, &region);
-    submit(what);
+    vkCmdCopyBuffer(commands.buffer, from, to, 1, &region);
+    submit_and_wait(std::move(commands), what);
 }
 
 void VulkanDevice::send(Memory& to, std::uint64_t offset, std::span<const std::byte> from) {
@@ -116,9 +116,9 @@ void VulkanDevice::fetch(Memory& from, std::uint64_t offset, std::span<std::byte
 
 void VulkanDevice::fill_apart(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
                               std::uint32_t word) {
-    begin();
-    vkCmdFillBuffer(commands_, own<VulkanMemory>(memory).buffer(), offset, bytes, word);
-    submit("filling buffer " + memory.name());
+    VulkanCommands commands = take_commands();
+    vkCmdFillBuffer(commands.buffer, own<VulkanMemory>(memory).buffer(), offset, bytes, word);
+    submit_and_wait(std::move(commands), "filling buffer " + memory.name());
 }
 
 }  // namespace topple::device

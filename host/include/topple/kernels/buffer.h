@@ -81,9 +81,10 @@ class Buffer {
     }
     operator Slice<T>() const { return slice(0, count_); }
 
-    // The elements themselves where the device shares the host's memory, else empty.
+    // The elements themselves where the device shares the host's memory, else empty. Not to be
+    // touched while a batch in flight binds them.
     std::span<T> host_view() const {
-        auto* address = memory_ ? memory_->host_address() : nullptr;
+        auto* address = memory_ ? device_->host_view(*memory_) : nullptr;
         return address ? std::span<T>(reinterpret_cast<T*>(address), count_) : std::span<T>();
     }
 
@@ -99,7 +100,7 @@ class Buffer {
 
     Device* device_ = nullptr;
     std::uint64_t count_ = 0;
-    std::unique_ptr<Memory> memory_;
+    MemoryPtr memory_;
 };
 
 // The types of a kernel's arguments. Each takes a Buffer or a Slice of the right element type.

@@ -10,11 +10,12 @@
 
 namespace topple::device {
 
-// Collects dispatches and runs them as one batch with one wait.
+// Collects dispatches and runs them as one batch.
 //
 //     Queue queue(device);
 //     queue.add<kernels::Triad>(count, {.a = a, .b = b, .dst = c}, {.count = count, .scale = 2});
-//     queue.run();
+//     queue.submit();  // or run(), which waits
+//     std::vector<float> sums = c.download();  // waits for the last batch that binds c
 //
 // K is a kernel description generated from kernels/<name>.kernel; its Args struct has one member
 // per binding, by name, so a missing or mistyped buffer does not compile.
@@ -40,7 +41,10 @@ class Queue {
     void add(const KernelSource& kernel, std::uint64_t count, std::vector<BoundRange> ranges,
              std::span<const std::byte> params);
 
-    // Runs what was added since the last run, in order, and waits.
+    // Begins what was added since the last time, as Device::submit() says: after all batches of the
+    // device before it, whichever queue they came from. The buffers may be freed at once.
+    Event submit();
+    // The same, and waits.
     void run();
 
     Device& device() const { return device_; }
@@ -48,6 +52,8 @@ class Queue {
   private:
     std::uint64_t groups_for(const KernelSource& kernel, std::uint64_t count) const;
     void check(const Dispatch& dispatch) const;
+    // Taken out first: a failed run must not leave its dispatches behind for the next one.
+    std::vector<Dispatch> take() { return std::exchange(dispatches_, {}); }
 
     Device& device_;
     std::vector<Dispatch> dispatches_;
