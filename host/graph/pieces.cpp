@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -91,14 +92,14 @@ std::vector<std::vector<std::int32_t>> both_sides(std::span<const Joint> joints,
     const auto join = [&](std::int32_t p, std::int32_t q) {
         const auto at = place(p), other = place(q);
         if (!at || !other) return;
-        const std::size_t from = parts.root(*at), to = parts.root(*other);
-        const std::size_t ends[] = {parts.root(a), parts.root(b)};
-        const bool both = std::ranges::count(ends, from) + std::ranges::count(ends, to) == 2;
-        if (!both) parts.join(from, to);
+        const std::pair sides = std::minmax({parts.root(*at), parts.root(*other)});
+        if (sides != std::minmax({parts.root(a), parts.root(b)}))
+            parts.join(sides.first, sides.second);
     };
     for (const auto& [p, q] : links.together) join(p, q);
-    std::vector<Joint> likeliest_first(joints.begin(), joints.end());
-    std::erase_if(likeliest_first, [&](const Joint& j) { return !place(j.a) || !place(j.b); });
+    std::vector<Joint> likeliest_first;
+    std::ranges::copy_if(joints, std::back_inserter(likeliest_first),
+                         [&](const Joint& j) { return place(j.a) && place(j.b); });
     std::ranges::stable_sort(likeliest_first, std::ranges::greater{}, &Joint::log_odds);
     for (const Joint& j : likeliest_first) join(j.a, j.b);
     std::vector<std::vector<std::int32_t>> out(2);

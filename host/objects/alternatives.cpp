@@ -2,9 +2,7 @@
 #include "objects/alternatives.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include "graph/undersides.h"
@@ -21,11 +19,12 @@ using Parts = std::vector<std::int32_t>;
 // A reading whose bodies are to be found.
 struct Wanted {
     OtherReading reading;
-    std::vector<Parts> bodies;  // one, or two; none: it is found
+    std::vector<Parts> bodies;  // one, or two
 };
 
+// found: those whose bodies are known without.
 std::vector<Wanted> wanted(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
-                           const ObjectStage& stage) {
+                           const ObjectStage& stage, std::vector<OtherReading>& found) {
     const auto primitives = [&](ObjectId o) { return stage.objects[o].candidate.primitives; };
     std::vector<Wanted> out;
     const auto add = [&](ObjectId object, double probability, ObjectId with,
@@ -44,8 +43,8 @@ std::vector<Wanted> wanted(std::span<const graph::Joint> joints, const graph::Kn
             const Body& whole = stage.objects[with];
             if (static_cast<double>(object.candidate.body.voxels) <
                 graph::least_part * static_cast<double>(whole.candidate.body.voxels)) {
-                add(o, object.piece.probability, with, {});
-                out.back().reading.body = whole;  // of which it would change little
+                // Of which it would change little.
+                found.push_back({o, object.piece.probability, with, whole});
             } else {
                 Parts both = primitives(o);
                 for (const std::int32_t p : primitives(with)) both.push_back(p);
@@ -66,13 +65,11 @@ std::vector<Wanted> next_round(std::vector<Wanted>& wanted, std::size_t objects)
     std::vector<Wanted> round, later;
     std::vector<bool> taken(objects);
     for (Wanted& w : wanted) {
-        const auto wants = [&](ObjectId o) { return o >= 0 && taken[o.place()]; };
-        const bool now = w.bodies.empty() || (!wants(w.reading.object) && !wants(w.reading.with));
-        if (now && !w.bodies.empty()) {
-            taken[w.reading.object.place()] = true;
-            if (w.reading.with >= 0) taken[w.reading.with.place()] = true;
-        }
-        (now ? round : later).push_back(std::move(w));
+        // Two things are one object.
+        const ObjectId a = w.reading.object, b = w.reading.with < 0 ? a : w.reading.with;
+        const bool free = !taken[a.place()] && !taken[b.place()];
+        if (free) taken[a.place()] = taken[b.place()] = true;
+        (free ? round : later).push_back(std::move(w));
     }
     wanted = std::move(later);
     return round;
@@ -109,7 +106,6 @@ void find_bodies(device::Device& device, const physics::PartHulls& hulls, const 
                   unseen_of(parts), false);
     std::size_t next = 1;
     for (Wanted& w : round) {
-        if (w.bodies.empty()) continue;
         const auto first = bodies.begin() + static_cast<std::ptrdiff_t>(next);
         next += w.bodies.size();
         w.reading.body = std::move(*std::ranges::min_element(
@@ -125,8 +121,8 @@ std::vector<OtherReading> find_alternatives(device::Device& device, const physic
                                             std::span<const graph::Joint> joints,
                                             const graph::KnownLinks& links, double friction,
                                             const ObjectStage& stage) {
-    std::vector<Wanted> left = wanted(joints, links, stage);
     std::vector<OtherReading> out;
+    std::vector<Wanted> left = wanted(joints, links, stage, out);
     while (!left.empty()) {
         std::vector<Wanted> round = next_round(left, stage.objects.size());
         find_bodies(device, hulls, parts, maker, friction, stage, round);

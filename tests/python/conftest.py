@@ -3,26 +3,16 @@ import numpy as np
 import pytest
 
 import topple
-from made_scans import CAMERA, POSES, colours_of, parsed, photograph, seen_from
+from made_scans import CAMERA, POSES, box, colours_of, face, parsed, photograph, seen_from
 from topple.formats import cloud, frames
 
 
 def room_points():
     """Floor, four walls, a crate on the floor and a box on the crate, z up: (N, 3), float32, metres."""
     random = np.random.default_rng(1)
-
-    def face(corner, u, v):
-        u, v = np.array(u), np.array(v)
-        s, t = random.random((2, int(2500 * u.sum() * v.sum()), 1))
-        return np.array(corner) + s * u + t * v
-
-    def box(low, size):
-        low, (x, y, z) = np.array(low), np.diag(size)
-        return [face(low + z, x, y), face(low, x, z), face(low + y, x, z), face(low, y, z), face(low + x, y, z)]
-
     x, y, z = np.diag([2.8, 2.4, 1.4])
-    faces = [face([0, 0, 0], x, y), face([0, 0, 0], y, z), face([0, 0, 0], x, z), face(x, y, z), face(y, x, z)]
-    faces += box([1.0, 0.9, 0], [0.7, 0.6, 0.5]) + box([1.2, 1.1, 0.5], [0.25, 0.2, 0.35])
+    faces = [face(random, *sides) for sides in (([0, 0, 0], x, y), ([0, 0, 0], y, z), ([0, 0, 0], x, z), (x, y, z), (y, x, z))]
+    faces += box(random, [1.0, 0.9, 0], [0.7, 0.6, 0.5]) + box(random, [1.2, 1.1, 0.5], [0.25, 0.2, 0.35])
     return np.concatenate(faces).astype(np.float32)
 
 

@@ -11,6 +11,19 @@ def colours_of(points):
     return (60 + 150 * (points - points.min(axis=0)) / np.ptp(points, axis=0)).astype(np.uint8)
 
 
+def face(random, corner, u, v):
+    """Points of a rectangle with these sides, along the axes: 2500 a square metre."""
+    u, v = np.array(u), np.array(v)
+    s, t = random.random((2, int(2500 * u.sum() * v.sum()), 1))
+    return np.array(corner) + s * u + t * v
+
+
+def box(random, low, size):
+    """The faces of an upright box without its underside, each as points."""
+    low, (x, y, z) = np.array(low), np.diag(size)
+    return [face(random, *sides) for sides in ((low + z, x, y), (low, x, z), (low + y, x, z), (low, y, z), (low + x, y, z))]
+
+
 def parsed(path, device, **options):
     return topple.parse(path, device=device, disturbances=[], **options)
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import topple
+from made_scans import box
 from others import raises
 
 
@@ -374,18 +375,9 @@ def test_object_at_goes_from_a_place_to_the_object(result, points):
 def test_an_alternative_is_what_a_correction_makes_of_it(points, device):
     """A smaller box flush on a larger one, in the room without its other things."""
     random = np.random.default_rng(2)
-
-    def face(corner, u, v):
-        s, t = random.random((2, int(2500 * np.sum(u) * np.sum(v)), 1))
-        return np.array(corner) + s * u + t * v
-
-    def box(low, size):
-        low, (x, y, z) = np.array(low), np.diag(size)
-        return [face(low + z, x, y), face(low, x, z), face(low + y, x, z), face(low, y, z), face(low + x, y, z)]
-
     inside = (points[:, :2] > [0.9, 0.8]).all(1) & (points[:, :2] < [1.8, 1.6]).all(1)
     room = [points[~(inside & (points[:, 2] > 0.01))]]
-    scan = np.concatenate(room + box([1, 0.9, 0], [0.7, 0.6, 0.4]) + box([1.02, 0.92, 0.4], [0.66, 0.56, 0.3])).astype(np.float32)
+    scan = np.concatenate(room + box(random, [1, 0.9, 0], [0.7, 0.6, 0.4]) + box(random, [1.02, 0.92, 0.4], [0.66, 0.56, 0.3])).astype(np.float32)
     found = topple.parse(scan, device=device, disturbances=['wind'])
     doubtful, other = next((o, a) for o in found.objects for a in o.alternatives)
     assert 0.25 <= other.probability <= 1 and other.whole not in (-1, doubtful.id)
