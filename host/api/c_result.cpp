@@ -193,6 +193,8 @@ int topple_result_numbers(const topple_result* result, const char* of, uint64_t 
             found = numbers_of(item(scene.contacts, index, "contact"), name);
         else if (what == "support")
             found = numbers_of(item(scene.supports, index, "support"), name);
+        else if (what == "possible_thing")
+            found = numbers_of(item(scene.possible_things, index, "possible thing"), name);
         if (!found)
             throw Error(ErrorKind::usage, "field: no numbers " + io::in_quotes(name) + " of " +
                                               io::in_quotes(what) +

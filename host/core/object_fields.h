@@ -32,6 +32,26 @@ inline constexpr auto kind<Alternative> = described(
                .or_none = true}));
 
 template <>
+inline constexpr auto kind<PossibleThing> = described(
+    "PossibleThing", "What was counted as the building and may be a thing by itself.",
+    field("primitives", &PossibleThing::primitives, "its parts", Note{.rule = Rule::primitives}),
+    field("probability", &PossibleThing::probability, "that it is a thing, 0 to 1"),
+    field("size_m", &PossibleThing::size_m,
+          "its box along the room's axes, the third upright, metres"),
+    field("box_middle_m", &PossibleThing::box_middle_m, "the middle of that box, metres"),
+    field("mass_kg", &PossibleThing::mass_kg, "kilograms"),
+    field("barrier_J", &PossibleThing::barrier_J, "its barrier, joules"),
+    field("barrier_error_J", &PossibleThing::barrier_error_J, "one standard error of that"),
+    field("risk_J", &PossibleThing::risk_J,
+          "by disturbance: expected release per event if it is a thing, joules"),
+    field("unsafety_category", &PossibleThing::unsafety_category,
+          "the category it would have; none at all: it is not seen what holds it up, or no "
+          "disturbance was asked for",
+          Note{.one_of = "\"none\", \"low\", \"medium\", \"high\"",
+               .whole_null = true,
+               .or_none = true}));
+
+template <>
 inline constexpr auto kind<Fragility::Step> = described(
     nullptr, "A peak of earthquakes.",
     field("pga_g", &Fragility::Step::pga_g, "peak ground acceleration, in g"),

@@ -5,9 +5,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "graph/undersides.h"
-#include "physics/inertia.h"
-
 namespace topple {
 namespace {
 
@@ -75,57 +72,32 @@ std::vector<Wanted> next_round(std::vector<Wanted>& wanted, std::size_t objects)
     return round;
 }
 
-// Fills in the bodies of readings that share no object. The building is the first body of all; what
-// no reading is about stands where it is, and is nobody's.
-void find_bodies(device::Device& device, const physics::PartHulls& hulls, const SolidParts& parts,
-                 const BodyMaker& maker, double friction, const ObjectStage& stage,
-                 std::vector<Wanted>& round) {
-    const SolidScene& solids = *parts.solids;
-    std::vector<Parts> members(1);
-    for (const Body& object : stage.objects)
-        if (object.grounded) members.front() = object.candidate.primitives;
+// Fills in the bodies of readings that share no object.
+void find_bodies(const BodiesIf& bodies_if, std::vector<Wanted>& round) {
+    std::vector<Parts> primitives;
     for (Wanted& w : round)
-        for (Parts& body : w.bodies) members.push_back(std::move(body));
-    Table<PrimitiveId, std::int32_t> object_of(stage.object_of_primitive.size(), -1);
-    for (std::size_t o = 0; o < members.size(); ++o)
-        for (const std::int32_t p : members[o]) object_of[p] = static_cast<std::int32_t>(o);
-    const auto columns = graph::undersides(solids.cells(), object_of, members.size());
-    std::vector<Body> bodies(members.size());
-    device.threads().each(members.size(), 1, [&](std::size_t o) {
-        bodies[o] = maker.made(std::move(members[o]), columns[o], o == 0);
-    });
-    std::vector<double> density;
-    for (const Body& body : bodies) {
-        const physics::MassProperties& all = body.candidate.body;
-        density.push_back(all.volume_m3 > 0 ? all.mass_kg / all.volume_m3 : 0);
-    }
-    const std::vector<physics::Symmetric> inertia =
-        physics::inertia_of_objects(stage.masses.moments, stage.bodies, object_of, density);
-    for (std::size_t o = 0; o < bodies.size(); ++o) bodies[o].inertia = inertia[o];
-    find_barriers(device, hulls, solids, stage.hidden_walls, object_of, friction, bodies,
-                  unseen_of(parts), false);
-    std::size_t next = 1;
+        for (Parts& body : w.bodies) primitives.push_back(std::move(body));
+    std::vector<Body> bodies = bodies_if(std::move(primitives));
+    auto first = bodies.begin();
     for (Wanted& w : round) {
-        const auto first = bodies.begin() + static_cast<std::ptrdiff_t>(next);
-        next += w.bodies.size();
+        const auto end = first + static_cast<std::ptrdiff_t>(w.bodies.size());
         w.reading.body = std::move(*std::ranges::min_element(
-            first, first + static_cast<std::ptrdiff_t>(w.bodies.size()), {},
-            [](const Body& body) { return body.instability.barrier_J; }));
+            first, end, {}, [](const Body& body) { return body.instability.barrier_J; }));
+        first = end;
     }
 }
 
 }  // namespace
 
-std::vector<OtherReading> find_alternatives(device::Device& device, const physics::PartHulls& hulls,
-                                            const SolidParts& parts, const BodyMaker& maker,
+std::vector<OtherReading> find_alternatives(const BodiesIf& bodies_if,
                                             std::span<const graph::Joint> joints,
-                                            const graph::KnownLinks& links, double friction,
-                                            const ObjectStage& stage) {
+                                            const graph::KnownLinks& links) {
+    const ObjectStage& stage = bodies_if.stage;
     std::vector<OtherReading> out;
     std::vector<Wanted> left = wanted(joints, links, stage, out);
     while (!left.empty()) {
         std::vector<Wanted> round = next_round(left, stage.objects.size());
-        find_bodies(device, hulls, parts, maker, friction, stage, round);
+        find_bodies(bodies_if, round);
         for (Wanted& w : round) out.push_back(std::move(w.reading));
     }
     std::ranges::stable_sort(out, [](const OtherReading& a, const OtherReading& b) {

@@ -282,6 +282,14 @@ void HandCorrections::fix(SolidParts& parts, graph::Grouping& grouping, graph::S
                                                parts.solids->strays(), parts.solids->boundary());
 }
 
+std::vector<std::int32_t> HandCorrections::fixed() const {
+    std::vector<std::int32_t> out;
+    for (std::size_t n = 0; n < applied_.size(); ++n)
+        if (applied_[n].correction.kind == Kind::fixed)
+            out.insert(out.end(), located_[n].at.begin(), located_[n].at.end());
+    return out;
+}
+
 Table<ObjectId, KnownMass> HandCorrections::masses(ObjectOf object_of, std::size_t objects,
                                                    std::int32_t grounded) {
     Table<ObjectId, KnownMass> out(objects);

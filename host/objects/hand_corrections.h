@@ -41,6 +41,8 @@ class HandCorrections {
                                        graph::ShellOdds& shell, std::vector<graph::Joint>& joints);
     // Also gives parts that are of the room, or no longer so, their role.
     void fix(SolidParts& parts, graph::Grouping& grouping, graph::ShellOdds& shell);
+    // Primitives that are said to be fixed to the room.
+    std::vector<std::int32_t> fixed() const;
     // grounded: the room, which has no mass, -1: none.
     Table<ObjectId, KnownMass> masses(ObjectOf object_of, std::size_t objects,
                                       std::int32_t grounded);

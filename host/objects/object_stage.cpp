@@ -2,12 +2,14 @@
 #include "objects/object_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/thread_pool.h"
 #include "fitted/boosted_trees.h"
 #include "geometry/primitive_shapes.h"
+#include "graph/building_pieces.h"
 #include "graph/false_feet.h"
 #include "objects/alternatives.h"
 #include "objects/body_maker.h"
@@ -51,13 +53,23 @@ void number_objects(ObjectStage& out) {
         out.object_of_primitive.push_back(g + grounded + 1);
 }
 
-// What objects may be pieces of, and whether they may be several.
-void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
-                   const SolidCells& cells, ObjectStage& out) {
-    // The voxels that the surface of each was seen in.
-    Table<PrimitiveId, std::uint64_t> seen(out.object_of_primitive.size(), 0);
+std::size_t object_count(const ObjectStage& of) {
+    std::int32_t last = -1;
+    for (const std::int32_t o : of.object_of_primitive) last = std::max(last, o);
+    return static_cast<std::size_t>(last + 1);
+}
+
+// The voxels that the surface of each primitive was seen in.
+Table<PrimitiveId, std::uint64_t> seen_voxels(const SolidCells& cells, std::size_t primitives) {
+    Table<PrimitiveId, std::uint64_t> seen(primitives, 0);
     for (std::size_t n = 0; n < cells.size(); ++n)
         if (cells.primitive[n] >= 0 && cells.basis[n] == Basis::surface) ++seen[cells.primitive[n]];
+    return seen;
+}
+
+// What objects may be pieces of, and whether they may be several.
+void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
+                   TableView<PrimitiveId, std::uint64_t> seen, ObjectStage& out) {
     Table<ObjectId, std::uint64_t> of_objects(out.objects.size(), 0);  // none of the ground
     for (std::size_t p = 0; p < seen.size(); ++p) {
         const ObjectId o = out.object_of_primitive[p];
@@ -83,17 +95,65 @@ void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks
     }
 }
 
+void take_mass(const ObjectMasses::Object& mass, Body& object) {
+    object.mass_model = mass.model;
+    object.inertia = mass.inertia;
+    add_independent(mass.contents_error, object.body_error);
+    // What is off of alike things holds what is off of each by itself.
+    object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
+    if (mass.weighed) object.body_error.mass_kg = 0;
+}
+
+// Of the building no piece that is less likely a thing is told.
+constexpr double least_possible = 0.25;
+
+// The likely ones of the building's pieces, whose bodies are not known yet.
+void number_possible_things(std::vector<graph::BuildingPiece> pieces, ObjectStage& out) {
+    const auto objects = static_cast<std::int32_t>(object_count(out));
+    out.body_of_primitive = out.object_of_primitive;
+    for (graph::BuildingPiece& piece : pieces) {
+        if (piece.probability < least_possible) continue;
+        const auto body = objects + static_cast<std::int32_t>(out.possible_things.size());
+        for (const std::int32_t p : piece.primitives) out.body_of_primitive[p] = body;
+        PossibleBody& thing = out.possible_things.emplace_back();
+        thing.probability = piece.probability;
+        thing.body.candidate.primitives = std::move(piece.primitives);
+    }
+}
+
+void find_possible_things(const BodiesIf& bodies_if, ObjectStage& out) {
+    std::vector<std::vector<std::int32_t>> primitives;
+    for (PossibleBody& thing : out.possible_things)
+        primitives.push_back(std::move(thing.body.candidate.primitives));
+    std::vector<Body> bodies = bodies_if(std::move(primitives));
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        take_mass(out.masses.objects[out.objects.size() + n], bodies[n]);
+        out.possible_things[n].body = std::move(bodies[n]);
+    }
+}
+
+// The building's own, with that of what may be a thing.
+void take_whole_inertia(ObjectStage& out) {
+    Body& building = out.objects.front();
+    const physics::MassProperties& body = building.candidate.body;
+    std::vector<std::int32_t> of_building;
+    for (const std::int32_t o : out.object_of_primitive) of_building.push_back(o == 0 ? 0 : -1);
+    const std::array density{body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0};
+    building.inertia =
+        physics::inertia_of_objects(out.masses.moments, out.bodies, of_building, density).front();
+}
+
 // Objects by group, the ground first.
 void collect_objects(const SolidScene& solids, const BodyMaker& maker, const ParseOptions& options,
                      ThreadPool& threads, HandCorrections& hand, ObjectStage& out) {
     const Table<PrimitiveId, std::int32_t>& group = out.grouping.group;
-    std::int32_t objects = 0;
-    for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
-    const Table<ObjectId, KnownMass> known = hand.masses(
-        out.object_of_primitive, static_cast<std::size_t>(objects), grounded_object(out));
-    out.masses = weigh_objects(solids, out.object_of_primitive, known, grounded_object(out),
-                               options, out.bodies);
-    Table<ObjectId, std::vector<std::int32_t>> members(known.size());
+    const std::size_t objects = object_count(out);
+    Table<ObjectId, KnownMass> known =
+        hand.masses(out.object_of_primitive, objects, grounded_object(out));
+    known.resize(objects + out.possible_things.size());
+    out.masses = weigh_objects(solids, out.body_of_primitive, known, grounded_object(out), options,
+                               out.bodies);
+    Table<ObjectId, std::vector<std::int32_t>> members(objects);
     for (std::size_t p = 0; p < group.size(); ++p)
         members[out.object_of_primitive[p]].push_back(static_cast<std::int32_t>(p));
     const auto columns = graph::undersides(solids.cells(), out.object_of_primitive, members.size());
@@ -103,14 +163,9 @@ void collect_objects(const SolidScene& solids, const BodyMaker& maker, const Par
         Body& object = out.objects[o];
         object = maker.made(std::move(members[o]), columns[o],
                             grounded_object(out) == static_cast<std::int32_t>(o));
-        const ObjectMasses::Object& mass = out.masses.objects[o];
-        object.mass_model = mass.model;
-        object.inertia = mass.inertia;
-        add_independent(mass.contents_error, object.body_error);
-        // What is off of alike things holds what is off of each by itself.
-        object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
-        if (mass.weighed) object.body_error.mass_kg = 0;
+        take_mass(out.masses.objects[o], object);
     });
+    if (grounded_object(out) == 0) take_whole_inertia(out);
     Table<ObjectId, graph::Carried> carried;
     for (const Body& o : out.objects) carried.push_back({o.grounded, o.candidate.body.mass_kg});
     out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
@@ -262,6 +317,10 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
     });
     const SolidCells& cells = solid.solids->cells();
     const BoundaryCells& boundary = solid.solids->boundary();
+    const Table<PrimitiveId, std::uint64_t> seen = seen_voxels(cells, solid.model.size());
+    number_possible_things(graph::building_pieces(parts.joints, hand.links(), hand.fixed(),
+                                                  parts.shell, out.grouping, seen),
+                           out);
     const std::vector<double> density(solid.model.size(), options.density_kg_m3);
     out.bodies = stage("masses", [&] {
         return physics::mass_properties(device, cells, static_cast<std::int32_t>(density.size()),
@@ -274,8 +333,10 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
     out.pair_probability =
         graph::pair_probabilities(out.contacts, parts.joints, parts.shell, hand.links());
     const physics::PartHulls hulls = stage("supports", [&] {
+        // All but the building's, and what of that may be a thing.
         std::vector<bool> loose;
-        for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
+        for (const std::int32_t o : out.body_of_primitive)
+            loose.push_back(o != grounded_object(out));
         return physics::part_hulls(cells, boundary, loose, device.threads());
     });
     const BodyMaker maker = stage("barriers", [&] {
@@ -287,10 +348,11 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
                       options.friction, out.objects, unseen_of(solid));
         return made;
     });
-    doubt_objects(parts.joints, hand.links(), cells, out);
+    doubt_objects(parts.joints, hand.links(), seen, out);
     stage("alternatives", [&] {
-        out.alternatives = find_alternatives(device, hulls, solid, maker, parts.joints,
-                                             hand.links(), options.friction, out);
+        const BodiesIf bodies_if{device, hulls, solid, maker, out, options.friction};
+        out.alternatives = find_alternatives(bodies_if, parts.joints, hand.links());
+        if (!out.possible_things.empty()) find_possible_things(bodies_if, out);
     });
     out.told = hand.tell(out.object_of_primitive, out.objects.size(), grounded_object(out));
     return out;

@@ -77,6 +77,12 @@ struct OtherReading {
     Body body;               // the whole, or of both parts the one that falls more easily
 };
 
+// What was counted as the building, and may be a thing by itself.
+struct PossibleBody {
+    double probability = 0;  // that it is
+    Body body;               // then
+};
+
 struct ObjectStage {
     Table<PrimitiveId, physics::MassProperties> bodies;
     graph::ContactGraph contacts;
@@ -84,11 +90,14 @@ struct ObjectStage {
     graph::Grouping grouping;
     ObjectMasses masses;
     Table<PrimitiveId, std::int32_t> object_of_primitive;  // the ground, if any, is object 0
+    // The same, but of what may be a thing: the number of objects and its place in that list.
+    Table<PrimitiveId, std::int32_t> body_of_primitive;
     Table<ObjectId, Body> objects;
     FloorHeights floors;
     physics::HiddenWalls hidden_walls;
     std::vector<OtherReading> alternatives;  // by object, the likelier one first
-    std::vector<Support> supports;           // sorted by (supporter, supported)
+    std::vector<PossibleBody> possible_things;
+    std::vector<Support> supports;  // sorted by (supporter, supported)
     HandCorrections::Told told;
     std::optional<TakenAway> taken;  // by hand from the parts, before all else here
 };

@@ -15,8 +15,8 @@
 #include "physics/directions.h"
 #include "physics/overturning.h"
 #include "result/explanations.h"
+#include "result/possible_things.h"
 #include "result/sentences.h"
-#include "result/upright_pieces.h"
 #include "safety/disturbances.h"
 #include "safety/earthquake/fragility.h"
 #include "topple/version.h"
@@ -372,6 +372,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     add_primitives(parts, objects, to_input, scene);
     add_objects(objects, safety, to_input, scene);
     add_alternatives(objects, safety, scene);
+    scene.possible_things = possible_things(objects, safety, to_input);
     add_contacts(objects, to_input, scene);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
@@ -381,8 +382,8 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_corrections(scene);
     note_doubted_objects(scene);
     note_crowded_objects(scene);
-    const std::string upright = upright_pieces_note(parts, objects, to_input);
-    if (!upright.empty()) scene.notes.push_back(upright);
+    const std::string possible = possible_things_note(scene.possible_things);
+    if (!possible.empty()) scene.notes.push_back(possible);
     note_uncertain_barriers(scene);
     note_left_out(parts, safety, scene);
     note_short_hazard(scene);

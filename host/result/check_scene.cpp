@@ -107,6 +107,7 @@ void check_scene(const Scene& scene, const std::filesystem::path& file) {
         checks.check(scene.primitives[n], "primitive " + std::to_string(n), n);
     for (const Contact& c : scene.contacts) checks.check(c, "a contact");
     for (const Support& s : scene.supports) checks.check(s, "a support");
+    for (const PossibleThing& p : scene.possible_things) checks.check(p, "a possible thing");
     for (const AppliedCorrection& c : scene.corrections) checks.check(c, "a correction");
     checks.check(scene, "");
 }

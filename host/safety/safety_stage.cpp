@@ -19,7 +19,7 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
     safety::Surroundings s;
     const SolidScene& solids = *parts.solids;
     s.cells = &solids.cells();
-    const ObjectOf object_of(objects.object_of_primitive);
+    const ObjectOf object_of(objects.body_of_primitive);
     for (const std::int32_t p : solids.cells().primitive) s.object.push_back(object_of(p));
     for (std::size_t p = 0; p < solids.primitives(); ++p)
         s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
@@ -57,7 +57,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
 namespace {
 
 // Risks, and what the errors of barriers and masses make of them and of the categories.
-void weigh_risks(std::span<const Body> objects, std::span<const safety::RiskObject> at_risk,
+void weigh_risks(std::span<const double> mass_error_kg, std::span<const safety::RiskObject> at_risk,
                  SafetyStage& out) {
     const auto weaker = safety::at_end(at_risk, -1), firmer = safety::at_end(at_risk, 1);
     out.category.resize(at_risk.size());
@@ -67,7 +67,7 @@ void weigh_risks(std::span<const Body> objects, std::span<const safety::RiskObje
         std::vector<double> error_J;
         for (std::size_t o = 0; o < at_risk.size(); ++o) {
             const double mass_kg = at_risk[o].mass_kg;
-            const double share = mass_kg > 0 ? objects[o].body_error.mass_kg / mass_kg : 0;
+            const double share = mass_kg > 0 ? mass_error_kg[o] / mass_kg : 0;
             error_J.push_back(
                 safety::risk_error_J(out.risk.back()[o], {lower[o], higher[o]}, share));
             safety::CategoryEnds& ends = out.category[o];
@@ -78,8 +78,20 @@ void weigh_risks(std::span<const Body> objects, std::span<const safety::RiskObje
         }
         out.risk_error_J.push_back(std::move(error_J));
     }
-    out.unsafety = safety::unsafety(out.risk);
-    out.unsafety.resize(at_risk.size(), 1.0);
+}
+
+// Parts what was found of those that may be things from what was of objects.
+void part_possible(std::size_t objects, SafetyStage& out) {
+    const auto part = [&](auto& all) {
+        auto of_possible = all;
+        of_possible.erase(of_possible.begin(),
+                          of_possible.begin() + static_cast<std::ptrdiff_t>(objects));
+        all.resize(objects);
+        return of_possible;
+    };
+    for (std::vector<safety::Risk>& risk : out.risk) out.possible_risk.push_back(part(risk));
+    for (std::vector<double>& error : out.risk_error_J) error.resize(objects);
+    out.possible_category = part(out.category);
 }
 
 // What categories objects would have if they were what they may be else: as exposed as they are, as
@@ -118,12 +130,20 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
                           const ObjectStage& objects, const ParseOptions& options,
                           StageClock& stage) {
     SafetyStage out;
-    const std::vector<safety::RiskObject> at_risk = risk_objects(objects.objects);
+    std::vector<safety::RiskObject> all = risk_objects(objects.objects);
+    std::vector<double> mass_error_kg;
+    for (const Body& o : objects.objects) mass_error_kg.push_back(o.body_error.mass_kg);
+    for (const PossibleBody& thing : objects.possible_things) {
+        all.push_back(risk_objects({&thing.body, 1}).front());
+        mass_error_kg.push_back(thing.body.body_error.mass_kg);
+    }
+    // `all` goes on with what may be a thing.
+    const std::span<const safety::RiskObject> at_risk(all.data(), objects.objects.size());
     const safety::Surroundings around = surroundings(parts, objects);
     for (const std::string& name : options.disturbances) {
         const safety::DisturbanceKind& kind = safety::disturbance_kind(name);
         out.disturbances.push_back(
-            stage("field " + name, [&] { return kind.field(device, around, at_risk, options); }));
+            stage("field " + name, [&] { return kind.field(device, around, all, options); }));
     }
     stage("falls", [&] {
         out.landings = landings(parts, objects);
@@ -135,11 +155,14 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     out.gust_m_s = stage("gusts", [&] {
         for (const safety::Disturbance& disturbance : out.disturbances)
             if (!disturbance.gust_m_s.empty()) return disturbance.gust_m_s;
-        return safety::tipping_gusts(device, around, at_risk, {});
+        return safety::tipping_gusts(device, around, all, {});
     });
     stage("risk", [&] {
-        weigh_risks(objects.objects, at_risk, out);
-        weigh_alternatives(objects.alternatives, at_risk, out);
+        weigh_risks(mass_error_kg, all, out);
+        part_possible(at_risk.size(), out);
+        out.unsafety = safety::unsafety(out.risk);
+        out.unsafety.resize(at_risk.size(), 1.0);
+        weigh_alternatives(objects.alternatives, all, out);
     });
     stage("advice", [&] {
         out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,

@@ -25,7 +25,10 @@ struct SafetyStage {
     std::vector<double> unsafety;                   // by object, 1 to 10
     std::vector<safety::CategoryEnds> category;     // by object
     std::vector<safety::Category> if_otherwise;     // by alternative: the category it would have
-    std::vector<double> gust_m_s;                   // by object: that tips it; NaN: none does
+    // The same of those of ObjectStage::possible_things.
+    std::vector<std::vector<safety::Risk>> possible_risk;
+    std::vector<safety::CategoryEnds> possible_category;
+    std::vector<double> gust_m_s;  // by object: that tips it; NaN: none does
 };
 
 // The objects as the fields and the risk see them.

@@ -285,6 +285,25 @@ void check_acyclic(const std::set<std::pair<std::int32_t, std::int32_t>>& stated
     expect(free.size() == objects, "objects carry one another in a cycle");
 }
 
+void check_possible_things(const Scene& scene) {
+    std::set<std::int32_t> seen;
+    for (const PossibleThing& thing : scene.possible_things) {
+        expect_share(thing.probability, "the probability of a possible thing");
+        expect(!thing.primitives.empty(), "a possible thing of nothing");
+        for (const std::int32_t p : thing.primitives) {
+            expect(seen.insert(p).second, "two possible things share a part");
+            const std::int32_t o = scene.primitives.at(static_cast<std::size_t>(p)).object;
+            expect(scene.objects.at(static_cast<std::size_t>(o)).grounded,
+                   "a possible thing is an object, too");
+        }
+        expect(thing.mass_kg > 0, "a possible thing without a mass");
+        expect_amount(thing.barrier_J, "the barrier of a possible thing");
+        expect_amount(thing.barrier_error_J, "the error of that");
+        for (const auto& [name, joules] : thing.risk_J)
+            expect_amount(joules, "its risk by " + name);
+    }
+}
+
 void check_relations(const Scene& scene) {
     const auto primitives = static_cast<std::int32_t>(scene.primitives.size());
     const auto objects = static_cast<std::int32_t>(scene.objects.size());
@@ -334,6 +353,7 @@ void check(const Scene& scene) {
     check_head(scene);
     for (const std::uint8_t state : scene.solid.state) expect(state <= 1, "no state of a voxel");
     check_parts(scene);
+    check_possible_things(scene);
     for (const Object& o : scene.objects) {
         check_object(o, scene.objects.size(), scene.voxel_size_m);
         check_why(o, scene);

@@ -190,6 +190,19 @@ struct Alternative {
     std::string unsafety_category;
 };
 
+// What was counted as the building (object 0), or as fixed to it, and may be a thing by itself:
+// what it would be then. Corrections say which it is.
+struct PossibleThing {
+    std::vector<std::int32_t> primitives;
+    double probability = 0;  // that it is a thing
+    // Its box, as Object::size_m and box_middle_m.
+    Vec3 size_m{}, box_middle_m{};
+    double mass_kg = 0, barrier_J = 0, barrier_error_J = 0;
+    std::map<std::string, double> risk_J;  // by disturbance: expected release per event
+    // As Object::unsafety_category; "": not seen enough, or no disturbance.
+    std::string unsafety_category;
+};
+
 // A set of primitives fixed to one another: one rigid body.
 struct Object {
     std::int32_t id = -1;
@@ -354,6 +367,8 @@ struct Scene {
     std::vector<Object> objects;
     std::vector<Contact> contacts;
     std::vector<Support> supports;
+    // Those that endanger most if they are things, each by its risk times its probability, first.
+    std::vector<PossibleThing> possible_things;
     std::vector<std::pair<std::string, double>> timings_s;  // in the order of the stages
     std::vector<double> swc_energy;  // best energy after each sweep of the sampler (paper, Fig. 7d)
     std::vector<std::string> notes;  // what the reader of the result should know, in sentences

@@ -333,10 +333,10 @@ int topple_result_contact(const topple_result* result, uint64_t index, topple_co
 int topple_result_support(const topple_result* result, uint64_t index, topple_support* support,
                           topple_status* status);
 /* Numbers by their name in scene.json (docs/output.md), those that the structs above lack, too. of:
- * "scene", "primitive", "object", "contact" or "support"; index: as above, of the scene 0. field:
- * "mass_kg", or of what is nested "fall.hits_J". `count` becomes how many numbers it has: 1, or
- * those of a vector or list; true and false are 1 and 0. The first `capacity` of them go to
- * `values`. TOPPLE_ERROR_USAGE: there is no such field, or it holds no numbers. */
+ * "scene", "primitive", "object", "contact", "support" or "possible_thing"; index: as above, of the
+ * scene 0. field: "mass_kg", or of what is nested "fall.hits_J". `count` becomes how many numbers
+ * it has: 1, or those of a vector or list; true and false are 1 and 0. The first `capacity` of them
+ * go to `values`. TOPPLE_ERROR_USAGE: there is no such field, or it holds no numbers. */
 int topple_result_numbers(const topple_result* result, const char* of, uint64_t index,
                           const char* field, double* values, uint64_t capacity, uint64_t* count,
                           topple_status* status);

@@ -27,11 +27,11 @@ from ._frames import Frames as _Frames
 from ._options import named as _named, option as _option
 from ._program import generate
 from ._removal import RemovalOrder
-from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, Why, __version__
+from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, PossibleThing, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'RemovalOrder', 'Result',
+__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
            'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()

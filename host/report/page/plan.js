@@ -13,7 +13,7 @@ class Plan {
     this.size = [high[0] - low[0], high[1] - low[1]];
     panel.hidden = !(this.size[0] > 0 && this.size[1] > 0) || !drawnRecords(scene.view).count;
     document.getElementById('plan-note').textContent = 'In metres from the south-west corner; north is the room\u2019s own.' +
-      (this.shown.some(object => object.seen_enough === false) ? ' ?: not judged.' : '') + (listedPieces(scene).length ? ' Letters: the building, or furniture.' : '');
+      (this.shown.some(object => object.seen_enough === false) ? ' ?: not judged.' : '') + (listedPieces(scene).length ? ' Letters: the building, or a thing.' : '');
   }
 
   paint() {

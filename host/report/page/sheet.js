@@ -27,8 +27,8 @@ function greyLine(scene) {
   const found = listedPieces(scene);
   return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [element('strong', {text: 'What is counted as the building is not judged. '}),
     'Is there a shelf or cabinet among it? Check that it is screwed to the wall. ',
-    element('small', {text: found.length ? `These pieces of the building stand before a wall, and may be furniture: ${found.slice(0, listedFurniture).map(one => `${one.letter}: ${furnitureText(scene, one)}`).join('; ')}` +
-      `${found.length > listedFurniture ? `; and ${found.length - listedFurniture} smaller` : ''}.` : ''})])]);
+    element('small', {text: found.length ? `These pieces of the building may be things: ${found.slice(0, listedFurniture).map(one => `${one.letter}: ${furnitureText(scene, one)}`).join('; ')}` +
+      `${found.length > listedFurniture ? `; and ${found.length - listedFurniture} others` : ''}.` : ''})])]);
 }
 
 // What it does and how often, in one line.
