@@ -380,7 +380,7 @@ def source_cpp(form, namespace, checked=None):
         entry = 'void run_checked(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);\n'
         last = '        , &checked\n'
         source = f'''    static const ::topple::device::KernelSource checked{{
-        {common} checked_bindings, checked_spirv, checked_opencl,
+        {common} {scope}::checked_bindings, {scope}::checked_spirv, {scope}::checked_opencl,
         {{{scope}::run_checked, nullptr, nullptr}}
     }};
 '''
@@ -394,15 +394,13 @@ void run_baseline(const ::topple::device::NativeArgs&, std::uint32_t, std::uint3
 void run_avx2(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);
 void run_avx512(const ::topple::device::NativeArgs&, std::uint32_t, std::uint32_t);
 #endif
-{entry}}}  // namespace {scope}
-namespace {{
-
+{entry}
 {constants}
-}}  // namespace
+}}  // namespace {scope}
 
 const ::topple::device::KernelSource& {camel}::source() {{
 {source}    static const ::topple::device::KernelSource source{{
-        {common} bindings, spirv, opencl,
+        {common} {scope}::bindings, {scope}::spirv, {scope}::opencl,
 #ifdef TOPPLE_NATIVE_ISAS
         {{{scope}::run_baseline, {scope}::run_avx2, {scope}::run_avx512}}
 #else
