@@ -55,3 +55,29 @@ STRUCT(ComponentParams) {
     uint nodes;
     uint edges;  // of this tile
 } STRUCT_END(ComponentParams)
+
+// grid_keys
+STRUCT(GridKeysParams) {
+    uint count;   // points
+    float per_m;  // 1 / edge of a cell
+} STRUCT_END(GridKeysParams)
+
+// grid_shift
+STRUCT(GridShiftParams) {
+    uint count;  // keys
+    int di;      // cells
+    int dj;
+    int dk;
+    uint keep;   // bits of the low word that stay
+} STRUCT_END(GridShiftParams)
+
+// grid_masks
+STRUCT(GridMasksParams) {
+    uint leaves;
+} STRUCT_END(GridMasksParams)
+
+// search_keys
+STRUCT(SearchKeysParams) {
+    uint count;  // keys that are looked for
+    uint keys;   // that there are
+} STRUCT_END(SearchKeysParams)

@@ -33,6 +33,7 @@ std::span<const Case> all_cases() {
         {"primitives/sort", sort_keys},
         {"primitives/sort_wide_records", sort_wide_records},
         {"primitives/unique", unique_wide_keys},
+        {"primitives/sparse_grid", sparse_grid},
         {"primitives/segmented_sum", segmented_sums},
         {"primitives/segmented_scan", segmented_scan},
         {"primitives/histogram", histogram},

@@ -34,6 +34,7 @@ Prepared compaction(device::Device& device);
 Prepared sort_keys(device::Device& device);
 Prepared sort_wide_records(device::Device& device);
 Prepared unique_wide_keys(device::Device& device);
+Prepared sparse_grid(device::Device& device);
 Prepared segmented_sums(device::Device& device);
 Prepared segmented_scan(device::Device& device);
 Prepared histogram(device::Device& device);

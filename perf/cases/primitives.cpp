@@ -9,6 +9,7 @@
 #include "topple/kernels/primitives/runs.h"
 #include "topple/kernels/primitives/scan.h"
 #include "topple/kernels/primitives/sort.h"
+#include "topple/kernels/primitives/sparse_grid.h"
 
 // Data-parallel primitives on arrays of 64 MiB, larger than any cache of the machines this is meant
 // for. Bytes: each input and output once; of a sort, keys and values in and out once for each digit
@@ -147,6 +148,34 @@ Prepared unique_wide_keys(device::Device& device) {
                                            primitives::Segments::of_keys(in[0], in[1]), out[0],
                                            out[1], out[2], out[3]);
                     });
+}
+
+// The leaves beside those of a grid of 2 million cells, and its cells, one after the other. Bytes:
+// keys and what is found of them; what the searches read of the list stays in caches.
+Prepared sparse_grid(device::Device& device) {
+    constexpr std::uint32_t cells = count / 8;
+    const auto on = std::make_shared<On>(device);
+    const Words key = noise(cells, 30);
+    Words low, high;
+    for (const std::uint32_t k : key) {
+        const std::uint64_t cell = primitives::grid_key(static_cast<std::int32_t>(k & 1023),
+                                                        static_cast<std::int32_t>(k >> 10 & 1023),
+                                                        static_cast<std::int32_t>(k >> 20 & 63));
+        low.push_back(static_cast<std::uint32_t>(cell));
+        high.push_back(static_cast<std::uint32_t>(cell >> 32));
+    }
+    on->in(low, "low");
+    on->in(high, "high");
+    const auto grid = std::make_shared<primitives::SparseGrid>(
+        primitives::SparseGrid::of_keys(device, on->inputs[0], on->inputs[1]));
+    on->out(cells, "places");
+    on->out(grid->leaves, "leaves beside");
+    return prepared(
+        on, 12.0 * (cells + grid->leaves),
+        [grid](device::Queue& queue, primitives::Scratch& scratch, Arrays in, Arrays out) {
+            grid->find(queue, in[0], in[1], out[0]);
+            grid->neighbours(queue, scratch, 1, 0, 0, out[1]);
+        });
 }
 
 Prepared segmented_sums(device::Device& device) {

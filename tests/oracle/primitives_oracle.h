@@ -94,4 +94,37 @@ inline Words components(std::uint32_t nodes, const Words& from, const Words& to)
     return out;
 }
 
+// Of a sparse grid: its cells, by leaves of 8 each way, in order of both.
+using Cell = std::array<std::int64_t, 3>;
+struct CellsByLeaf {
+    std::map<Cell, std::set<Cell>> cells_of_leaf;
+
+    explicit CellsByLeaf(const std::vector<Cell>& cells) {
+        for (const Cell& cell : cells) cells_of_leaf[leaf_of(cell)].insert(cell);
+    }
+    static Cell leaf_of(Cell cell) {
+        for (std::int64_t& c : cell) c = c >= 0 ? c / 8 : -((7 - c) / 8);
+        return cell;
+    }
+    std::vector<Cell> cells() const {
+        std::vector<Cell> out;
+        for (const auto& [leaf, cells] : cells_of_leaf)
+            out.insert(out.end(), cells.begin(), cells.end());
+        return out;
+    }
+    CellsByLeaf dilated() const {
+        std::vector<Cell> out;
+        for (const Cell& cell : cells()) {
+            out.push_back(cell);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                for (const int way : {-1, 1}) {
+                    Cell beside = cell;
+                    beside[axis] += way;
+                    if (std::abs(beside[axis] + 0.5) < (1 << 20)) out.push_back(beside);
+                }
+        }
+        return CellsByLeaf(out);
+    }
+};
+
 }  // namespace topple::oracle
