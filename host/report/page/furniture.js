@@ -22,7 +22,7 @@ function furnitureText(scene, {box, size_m: size, probability, barrier_J: barrie
 function fillFurniture(panel, scene, tick) {
   const found = listedPieces(scene);
   if (!scene.objects.some(object => object.grounded)) return;
-  const group = cardGroup(`Counted as the building${found.length ? ` (${found.length} may be things)` : ''}`, [element('p', {className: 'hint', text:
+  const group = cardGroup(`Counted as the building${found.length ? ` (${found.length} may be ${found.length === 1 ? 'a thing' : 'things'})` : ''}`, [element('p', {className: 'hint', text:
     'What is palest in the view is not judged: it is counted as the building, or as fixed to it. If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.' +
     (found.length ? ` ${found.length === 1 ? 'This' : 'These'} may be ${found.length === 1 ? 'a thing' : 'things'}:` : '')})]);
   panel.append(group);

@@ -54,7 +54,8 @@ function headlineOf(scene) {
   if (!scene.objects.some(object => !object.grounded)) return 'Nothing here can move';
   const unseen = unseenOnes(scene).length;
   if (nothingJudged(scene)) return `Nothing was judged: the scan does not show what holds ${unseen === 1 ? 'the one thing' : `the ${unseen} things`} here`;
-  return headlineText(urgentOnes(scene, true).length, looksOf(scene).length, unseen);
+  const possible = (scene.possible_things || []).filter(one => categories.indexOf(one.unsafety_category) >= categories.indexOf('medium'));
+  return headlineText(urgentOnes(scene, true).length, looksOf(scene).length + possible.length, unseen);
 }
 
 // Of the notes those that change what one may believe at all: units and poses in doubt, what is no scan, or a coarse one.

@@ -235,6 +235,31 @@ TEST_F(PageRisk, lists_what_is_to_be_looked_at) {
     EXPECT_THAT(page.data("card3"), Not(HasSubstr("Of 100 earthquakes")));
 }
 
+// What of the building may be a thing: counted where it would matter, told with its letter, and its
+// parts are ticked by a click.
+TEST_F(PageRisk, says_what_of_the_building_may_be_a_thing) {
+    Scene scene = test::SyntheticScene(0.2).make();
+    PossibleThing wall;
+    wall.primitives = {1};
+    wall.probability = 0.45;
+    wall.size_m = {4.2, 5.2, 2.5};
+    wall.barrier_J = 35;
+    wall.unsafety_category = "high";
+    scene.possible_things.assign(2, wall);
+    scene.possible_things[1].primitives = {2};
+    scene.possible_things[1].unsafety_category = "none";
+    open(scene, R"(
+        is(document.getElementById('headline').textContent, '2 things to act on, 1 to look at');
+        const group = document.querySelector('.furniture').closest('.cards');
+        group.open = true;
+        is(group.textContent.includes('Counted as the building (1 may be a thing)'), true, group.textContent);
+        is(/A: .*45 % likely a thing, and then 35 J, high/.test(group.textContent), true, group.textContent);
+        is(document.querySelectorAll('.furniture li').length, 1);
+        document.querySelector('.furniture button').click();
+        is(document.querySelectorAll('#mend input:checked').length > 0, true);
+    )");
+}
+
 // Of a report as a stranger opens it: how many to act on, and no card of more than 30 words.
 TEST_F(PageRisk, says_first_what_to_do_in_few_words) {
     Scene scene = test::SyntheticScene(0.2).make();
