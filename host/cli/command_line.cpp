@@ -20,7 +20,10 @@
 #include "cli/further_options.h"
 #include "cli/interrupt.h"
 #include "cli/print.h"
+#include "cli/shared_options.h"
 #include "cli/unknown_option.h"
+#include "core/short_number.h"
+#include "io/text.h"
 #include "topple/version.h"
 
 namespace topple::cli {
@@ -28,6 +31,17 @@ namespace {
 
 Error wrong_usage(const std::string& what) {
     return {ErrorKind::usage, what + " (see topple --help)"};
+}
+
+// Of a value with a unit of length behind its number what to give in its place.
+std::string in_metres(const std::string& value) {
+    double number = 0;
+    for (const auto& [unit, metres] : units_of_length())
+        if (value.ends_with(unit) &&
+            io::parse_number(value.substr(0, value.size() - unit.size()), number))
+            return " without its unit: lengths are in metres, here " +
+                   short_number(number * metres);
+    return {};
 }
 
 // An empty value, as an unset variable of a script leaves it, is none: the library takes it for the
@@ -89,8 +103,11 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
         // "Could not convert: --wind-from = abc"
         std::string what = error.what();
         const auto from = what.find("--"), is = what.find(" = ");
-        if (from != std::string::npos && is != std::string::npos && from < is)
-            what = what.substr(from, is - from) + " " + what.substr(is + 3) + ": expected a number";
+        if (from != std::string::npos && is != std::string::npos && from < is) {
+            const std::string value = what.substr(is + 3);
+            what = what.substr(from, is - from) + " " + value + ": expected a number" +
+                   in_metres(value);
+        }
         throw wrong_usage(what);
     } catch (const CLI::ValidationError& error) {
         // "--unit: feet: expected m or cm", of which the first part is the parser's.

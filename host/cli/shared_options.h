@@ -12,12 +12,17 @@
 // Options that several commands have.
 namespace topple::cli {
 
-// --unit, which sets metres per unit of the input's coordinates.
-inline void add_unit_option(CLI::App& app, double& unit_m) {
+// Metres in each.
+inline const std::map<std::string, double>& units_of_length() {
     static const std::map<std::string, double> units{
         {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+    return units;
+}
+
+// --unit, which sets metres per unit of the input's coordinates.
+inline void add_unit_option(CLI::App& app, double& unit_m) {
     app.add_option_function<std::string>(
-           "--unit", [&unit_m](const std::string& unit) { unit_m = units.at(unit); },
+           "--unit", [&unit_m](const std::string& unit) { unit_m = units_of_length().at(unit); },
            "Unit of a cloud's or mesh's coordinates: m, cm, mm, in or ft; the output is in metres")
         ->check(one_of({"m", "cm", "mm", "in", "ft"}))
         ->default_str("m");

@@ -215,6 +215,12 @@ struct Sentence {
 };
 
 constexpr double light_kg = 5;  // one carries it away rather than fastens it
+// What one person lifts (NIOSH lifting equation, 1991: 23 kg at best), and gets hold of: a chair, a
+// stool. Nobody bolts these to a floor.
+constexpr double carried_kg = 23, carried_m = 1.2;
+bool is_carried(const Object& object) {
+    return object.mass_kg <= carried_kg && std::ranges::max(object.size_m) <= carried_m;
+}
 
 std::string joules(double value) {
     return value < 0.0005 ? "nothing" : energy(value) + " per event";
@@ -251,6 +257,8 @@ std::string at_least_N(double force_N) {
 std::string fix_sentence(const Object& object, const Suggestion& what) {
     constexpr double one_strap_m = 1;  // what is wider turns about a single one; set by hand
     const bool light = object.mass_kg < light_kg, bolted = !what.fasten.wall && what.fasten.floor;
+    if (bolted && !light && is_carried(object))
+        return "Move it to where nobody passes and it stands level, or take it out.";
     std::string text = mend_of(object, what.fasten);
     if (light) text = what.leg_of < 0 ? "Put it elsewhere, or fasten it" : "Fasten it";
     if (!(what.hold.force_N > 0)) return text + ".";

@@ -31,6 +31,9 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
           {"disturbances (--disturbance) people: expected human", "for people say human"});
     fails(2, "parse plane.xyz --motion a.bvh --motion-unit 0",
           {"--motion-unit 0: expected a number above 0"});
+    fails(2, "parse plane.xyz --voxel 2cm",
+          {"--voxel 2cm: expected a number without its unit: lengths are in metres, here 0.02"});
+    fails(2, "parse plane.xyz --voxel cm", {"--voxel cm: expected a number (see"});
     fails(2, "parse plane.xyz --threads 100000", {"threads (--threads) 100000: at most"});
     fails(2, "parse plane.xyz --disturbance human,wind,human",
           {"disturbances (--disturbance): human is given twice"});

@@ -173,9 +173,10 @@ TEST(Explain, straps_are_told_by_what_they_carry) {
 
 // What one asks before one fastens it: against what, to what, and with how many brackets.
 TEST(Explain, a_fixing_is_told_with_its_reason_and_what_it_goes_to) {
-    const auto of_shelf = [](const Fastening& to, double mass_kg = 20, std::int32_t leg_of = -1) {
+    const auto of_shelf = [](const Fastening& to, double mass_kg = 20, std::int32_t leg_of = -1,
+                             double width_m = 1.9) {
         return fixing({154, 1.7}, [&](Object& shelf, Suggestion& what) {
-            shelf.size_m = {0.4, 1.9, 1.7};
+            shelf.size_m = {0.4, width_m, std::min(width_m, 1.7)};
             shelf.mass_kg = mass_kg;
             what.hold_against = "human";
             what.fasten = to;
@@ -191,6 +192,11 @@ TEST(Explain, a_fixing_is_told_with_its_reason_and_what_it_goes_to) {
               "Bolt it to the floor, keep people away, or take it out: at its top, 1.7 m above "
               "what it stands on, it must be held against 154 N sideways at least, the push of a "
               "person who walks into it, without a margin.");
+    // A chair.
+    EXPECT_EQ(of_shelf({.wall = false, .floor = true}, 8, -1, 0.9),
+              "Move it to where nobody passes and it stands level, or take it out.");
+    EXPECT_THAT(of_shelf({.wall = false, .floor = true}, 25, -1, 0.9),
+                testing::StartsWith("Bolt it to the floor"));
     EXPECT_THAT(of_shelf({}, 2, 1),
                 testing::StartsWith("Look first: this may be a leg of object 1. If it is none: "
                                     "fasten it, with two straps"));
