@@ -263,22 +263,28 @@ void rocking(RandomBatch& to, Random& random, std::uint32_t size) {
         const bool up = n >= std::size_t{2} * steps * chunks;
         strongest.push_back(up ? std::min(least, 0.0f) : std::max(-least, greatest));
     }
-    to.queue.add<kernels::Rocking>(
-        events,
-        {.body = to.in(random.floats(bodies * planes, 0.02f, 1)),
-         .event_body = to.in(naturals(random, events, bodies)),
-         .event_scale = to.in(random.floats(std::size_t{4} * events, 0.3f, 1.2f)),
-         .block_record = to.in(naturals(random, events / 64, first.size() - 1)),
-         .record_first = to.in(first),
-         .record_step = to.in(random.floats(first.size() - 1, 0.005f, 0.02f)),
-         .shaking = to.in(shaking),
-         .strongest = to.in(strongest),
-         .outcome = to.out<float>(std::size_t{4} * events)},
-        {.event_count = events,
-         .body_count = bodies,
-         .chunk_count = chunks,
-         .gravity = 9.80665f,
-         .longest_s = random.uniform(0.1f, 1)});
+    const kernels::Rocking::Args arrays{
+        .body = to.in(random.floats(bodies * planes, 0.02f, 1)),
+        .event_body = to.in(naturals(random, events, bodies)),
+        .event_scale = to.in(random.floats(std::size_t{4} * events, 0.3f, 1.2f)),
+        .block_record = to.in(naturals(random, events / 64, first.size() - 1)),
+        .record_first = to.in(first),
+        .record_step = to.in(random.floats(first.size() - 1, 0.005f, 0.02f)),
+        .shaking = to.in(shaking),
+        .strongest = to.in(strongest),
+        .outcome = to.out<float>(std::size_t{10} * events)};
+    const float longest_s = random.uniform(0.1f, 1);
+    constexpr std::uint32_t turns[] = {0, 2, 1000};
+    for (std::size_t n = 0; n < 2; ++n) {
+        to.queue.add<kernels::Rocking>(events, arrays,
+                                       {.event_count = events,
+                                        .body_count = bodies,
+                                        .chunk_count = chunks,
+                                        .gravity = 9.80665f,
+                                        .longest_s = longest_s,
+                                        .chunk_first = turns[n],
+                                        .chunk_last = turns[n + 1]});
+    }
 }
 
 void dialect_probe(RandomBatch& to, Random& random, std::uint32_t size) {
