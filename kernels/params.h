@@ -126,6 +126,8 @@ STRUCT(RockingParams) {
     uint chunk_count;  // of all records
     float gravity;     // m/s^2
     float longest_s;   // after a record's end, until a motion has to have come to its own
+    uint chunk_first;  // of each motion, the chunks of steps that are followed: begun where it is 0,
+    uint chunk_last;   // before this one
 } STRUCT_END(RockingParams)
 
 // dialect_probe

@@ -7,6 +7,8 @@ import subprocess
 import sys
 import tempfile
 
+# Of a case, beside what was counted: its own work as it tells it.
+WORK = ('items', 'bytes', 'operations', 'divisions', 'gathers')
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
@@ -72,7 +74,8 @@ class Side:
             with open(out, encoding='utf-8') as file:
                 results = json.load(file)['results']
         for r in results:
-            self.facts.setdefault((r['backend'], r['case']), []).append((r['hash'], r['counts']))
+            counts = r['counts'] | {key: r[key] for key in WORK}
+            self.facts.setdefault((r['backend'], r['case']), []).append((r['hash'], counts))
         return {(r['backend'], r['case']): r['best_s'] if r['gpu'] or not r['samples_cpu_s'] else r['best_cpu_s']
                 for r in results}
 

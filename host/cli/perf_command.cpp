@@ -69,6 +69,8 @@ Command add_perf(CLI::App& app) {
     app.add_option("--runs", suite.measure.runs,
                    "Samples of each kernel (default: 7 to 100, for --seconds)")
         ->check(whole_number);
+    app.add_flag("--once", suite.measure.once,
+                 "Run each kernel once, and no more: for counts and hashes (perf/facts)");
     app.add_option("--seconds", suite.measure.seconds, "Time for each kernel")
         ->check(CLI::Range(0.0, 3600.0))
         ->capture_default_str();

@@ -65,11 +65,11 @@ Prepared rocking(device::Device& device) {
                                           upload(device, on_host.event_body, "event_body"),
                                           upload(device, on_host.block_record, "block_record"),
                                           upload(device, on_host.first, "first"),
-                                          {device, 4 * ShakenBlocks::events, "outcome"}});
+                                          {device, 10 * ShakenBlocks::events, "outcome"}});
     const double steps = double{ShakenBlocks::events} * ShakenBlocks::steps;
     // 185 operations a step: 17 of them the sine and the cosine, one a division.
     return {{steps, "steps",
-             4.0 * (8.0 * ShakenBlocks::events + static_cast<double>(on_host.shaking.size())),
+             4.0 * (14.0 * ShakenBlocks::events + static_cast<double>(on_host.shaking.size())),
              185 * steps, steps},
             [on](device::Queue& queue) {
                 queue.add<kernels::Rocking>(
@@ -87,7 +87,9 @@ Prepared rocking(device::Device& device) {
                      .body_count = ShakenBlocks::kinds,
                      .chunk_count = ShakenBlocks::records * ShakenBlocks::chunks,
                      .gravity = 9.80665f,
-                     .longest_s = 0});
+                     .longest_s = 0,
+                     .chunk_first = 0,
+                     .chunk_last = ShakenBlocks::chunks + 1});
             },
             {},
             [on] { return Hash().add(on->outcome.download()).value(); }};

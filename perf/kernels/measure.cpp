@@ -74,15 +74,19 @@ Result measure(device::Device& device, const Case& test, const MeasureOptions& o
     device::Queue queue(device);
     if (prepared.reset) prepared.reset();
     prepared.enqueue(queue);
-    const double first = time_of(queue).wall_s;  // builds the kernel
+    const Span first = time_of(queue);  // builds the kernel
     Result result = named(device, test.name, prepared.work);
     result.hash = prepared.hash();
     result.counters = device.counters() - before;
+    if (options.once) {
+        result.add(first);
+        return result;
+    }
 
     unsigned batch = 1;
     if (!prepared.reset) {
         prepared.enqueue(queue);
-        const double once = std::min(first, time_of(queue).wall_s);
+        const double once = std::min(first.wall_s, time_of(queue).wall_s);
         batch = static_cast<unsigned>(std::clamp(std::ceil(0.001 / once), 1.0, 1000.0));
     }
     double spent = 0;

@@ -15,6 +15,7 @@ namespace topple::perf {
 struct MeasureOptions {
     unsigned runs = 0;     // samples of each case; 0: as many as fit into `seconds`, 7 to 100
     double seconds = 1.0;  // for each case
+    bool once = false;     // no sample but the first run, which builds the kernel, too
 };
 
 // Figures of one case on one backend, or of one stage of the pipeline.

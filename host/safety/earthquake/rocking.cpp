@@ -20,7 +20,10 @@ constexpr double longest_step = 0.05;       // times 1 / p
 // After a record a body near its balance has so long to make up its mind.
 constexpr float longest_after_s = 30;
 constexpr std::size_t chunk_steps = 32, block_events = 64;
-constexpr std::size_t most_events = std::size_t{1} << 20;  // of a batch: 16 MiB of outcomes
+constexpr std::size_t most_events = std::size_t{1} << 20;  // of a batch: 40 MiB of outcomes
+constexpr std::size_t outcome_planes = 10;
+// Of a dispatch: half of the rounds that the dialect allows a work-item.
+constexpr std::uint32_t most_chunks = 1024;
 
 // The quicker one of its two edges.
 double quickness(const Profile& body) {
@@ -66,7 +69,10 @@ struct Chunks {
             }
         }
         first.push_back(first.back() + static_cast<std::uint32_t>(chunks));
+        const double after = longest_after_s / (static_cast<double>(chunk_steps) * step_s.back());
+        longest = std::max(longest, static_cast<std::uint32_t>(chunks + std::ceil(after)) + 1);
     }
+    std::uint32_t longest = 0;  // chunks until the last motion has come to its own
 };
 
 template <class Planes>
@@ -120,23 +126,27 @@ void run_batch(device::Device& device, const device::Buffer<float>& body, std::s
                record_step = on(device, chunks.step_s, "record_step"),
                shaking = on(device, joined(chunks.means), "shaking"),
                strongest = on(device, joined(chunks.strongest), "strongest");
-    const device::Buffer<float> outcome(device, 4 * events, "outcome");
+    const device::Buffer<float> outcome(device, outcome_planes * events, "outcome");
     device::Queue queue(device);
-    queue.add<kernels::Rocking>(events,
-                                {.body = body,
-                                 .event_body = event_body,
-                                 .event_scale = event_scale,
-                                 .block_record = block_record,
-                                 .record_first = record_first,
-                                 .record_step = record_step,
-                                 .shaking = shaking,
-                                 .strongest = strongest,
-                                 .outcome = outcome},
-                                {.event_count = static_cast<std::uint32_t>(events),
-                                 .body_count = static_cast<std::uint32_t>(bodies),
-                                 .chunk_count = chunks.first.back(),
-                                 .gravity = static_cast<float>(gravity),
-                                 .longest_s = longest_after_s});
+    for (std::uint32_t from = 0; from < chunks.longest; from += most_chunks) {
+        queue.add<kernels::Rocking>(events,
+                                    {.body = body,
+                                     .event_body = event_body,
+                                     .event_scale = event_scale,
+                                     .block_record = block_record,
+                                     .record_first = record_first,
+                                     .record_step = record_step,
+                                     .shaking = shaking,
+                                     .strongest = strongest,
+                                     .outcome = outcome},
+                                    {.event_count = static_cast<std::uint32_t>(events),
+                                     .body_count = static_cast<std::uint32_t>(bodies),
+                                     .chunk_count = chunks.first.back(),
+                                     .gravity = static_cast<float>(gravity),
+                                     .longest_s = longest_after_s,
+                                     .chunk_first = from,
+                                     .chunk_last = from + most_chunks});
+    }
     queue.run();
     const std::vector<float> found = outcome.download();
     for (std::size_t e = 0; e < events; ++e) {
