@@ -6,7 +6,8 @@
 
 namespace topple::primitives {
 
-// Chunks that the work-items of a kernel take, of ITEMS elements each.
+// Chunks that the work-items of a kernel take, of ITEMS elements each. ITEMS is 2 or more: levels
+// of chunks of chunks are added until few are left, which with 1 would never be.
 template <class Kernel>
 std::uint64_t chunks_of(const device::Device& device, std::uint64_t count) {
     const std::uint64_t items = device.items_per_lane(Kernel::source());

@@ -16,10 +16,11 @@ namespace {
 constexpr unsigned digit_bits = 8;
 constexpr std::uint64_t digits = 1u << digit_bits;
 
-// Keys of a chunk: so few that all work-items of the device have some, so many that the counts of
-// all chunks are few beside the keys; of half the rounds that the dialect allows a work-item.
+// Keys of a chunk: so few that all work-items of the device have some, and that lavapipe runs a
+// work-item's loops over them and its 512 counters to their end (docs/dialect.md); so many that the
+// counts of all chunks are few beside the keys.
 std::uint64_t chunk_keys(device::Device& device, std::uint64_t count) {
-    constexpr std::uint64_t unit = 512, most = 32768;
+    constexpr std::uint64_t unit = 512, most = 126 * unit;
     const std::uint64_t chunks =
         device.info().gpu ? 32768 : std::uint64_t{128} * device.threads().threads();
     const std::uint64_t least = device.items_per_lane(kernels::RadixCount::source());

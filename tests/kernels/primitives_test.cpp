@@ -408,5 +408,28 @@ TEST_P(Primitives, OutputsThatAreTooSmallAreRefused) {
                 ::testing::HasSubstr("the output of a scan has 9 words; it needs 10"));
 }
 
+class ManyKeys : public Primitives {};
+TOPPLE_ON_EACH_FORM(ManyKeys);
+
+// As many as once gave each work-item of two threads more of them than lavapipe runs rounds of
+// loops.
+TEST_P(ManyKeys, AreSorted) {
+    constexpr std::size_t count = std::size_t{1} << 24;
+    constexpr unsigned bits = 8;
+    Words keys(count);
+    for (std::size_t i = 0; i < count; ++i)
+        keys[i] = static_cast<std::uint32_t>(i) * 2654435761u >> (32 - bits);
+    const Buffer from = buffer(keys, "keys"), to(*device, count, "sorted");
+    primitives::sort(*queue, *scratch, {from}, {to}, bits);
+    queue->run();
+    Words want;
+    want.reserve(count);
+    std::array<std::size_t, 1u << bits> of_key{};
+    for (const std::uint32_t key : keys) ++of_key[key];
+    for (std::uint32_t key = 0; key < of_key.size(); ++key)
+        want.insert(want.end(), of_key[key], key);
+    EXPECT_TRUE(same(to.download(), want));
+}
+
 }  // namespace
 }  // namespace topple::test
