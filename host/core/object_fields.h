@@ -36,6 +36,8 @@ inline constexpr auto kind<PossibleThing> = described(
     "PossibleThing", "What was counted as the building and may be a thing by itself.",
     field("primitives", &PossibleThing::primitives, "its parts", Note{.rule = Rule::primitives}),
     field("probability", &PossibleThing::probability, "that it is a thing, 0 to 1"),
+    field("spots_m", &PossibleThing::spots_m,
+          "a spot amid each of its parts, metres, for corrections", Note{.rule = Rule::finite}),
     field("size_m", &PossibleThing::size_m,
           "its box along the room's axes, the third upright, metres"),
     field("box_middle_m", &PossibleThing::box_middle_m, "the middle of that box, metres"),
@@ -262,8 +264,8 @@ inline constexpr auto kind<Object> = described(
           "whether it is the ground: floor, walls and what is fixed to them. It can't fall",
           &topple_object::grounded),
     field("agreement", &Object::agreement,
-          "the probability that it is one thing, whole, 0 to 1; 1: the ground, and what a "
-          "correction says is one",
+          "the probability that it is one thing, whole, 0 to 1; 1: the ground, and what "
+          "corrections say is one, with all its parts",
           Note{.since = "agreement"}, &topple_object::agreement),
     field("mass_kg", &Object::mass_kg, "kilograms", &topple_object::mass_kg),
     field("mass_model", &Object::mass_model,

@@ -372,7 +372,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     add_primitives(parts, objects, to_input, scene);
     add_objects(objects, safety, to_input, scene);
     add_alternatives(objects, safety, scene);
-    scene.possible_things = possible_things(objects, safety, to_input);
+    scene.possible_things = possible_things(parts.solids->cells(), objects, safety, to_input);
     add_contacts(objects, to_input, scene);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <ranges>
 
+#include "core/vectors.h"
 #include "io/text.h"
 
 namespace topple {
@@ -30,15 +31,36 @@ std::string in_text(const PossibleThing& thing) {
            io::two_digits(100 * thing.probability) + " % likely";
 }
 
+// The middle of the cell of each primitive that is nearest to its centre. Grid frame.
+Table<PrimitiveId, Vec3> spots(const SolidCells& cells,
+                               TableView<PrimitiveId, physics::MassProperties> bodies) {
+    Table<PrimitiveId, Vec3> out(bodies.size());
+    Table<PrimitiveId, double> nearest(bodies.size(), HUGE_VAL);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const PrimitiveId p = cells.primitive[n];
+        if (p < 0) continue;
+        const Vec3 middle{(cells.i[n] + 0.5) * cells.voxel_m, (cells.j[n] + 0.5) * cells.voxel_m,
+                          (cells.k[n] + 0.5) * cells.voxel_m};
+        const Vec3 way = minus(middle, bodies[p].center);
+        if (!(dot(way, way) < nearest[p])) continue;
+        nearest[p] = dot(way, way);
+        out[p] = middle;
+    }
+    return out;
+}
+
 }  // namespace
 
-std::vector<PossibleThing> possible_things(const ObjectStage& objects, const SafetyStage& safety,
-                                           const ToInput& to_input) {
+std::vector<PossibleThing> possible_things(const SolidCells& cells, const ObjectStage& objects,
+                                           const SafetyStage& safety, const ToInput& to_input) {
     std::vector<PossibleThing> out;
+    if (objects.possible_things.empty()) return out;
+    const Table<PrimitiveId, Vec3> spot = spots(cells, objects.bodies);
     for (std::size_t n = 0; n < objects.possible_things.size(); ++n) {
         const Body& from = objects.possible_things[n].body;
         PossibleThing& to = out.emplace_back();
         to.primitives = from.candidate.primitives;
+        for (const std::int32_t p : to.primitives) to.spots_m.push_back(to_input.place(spot[p]));
         to.probability = objects.possible_things[n].probability;
         to.size_m = from.box.size_m;
         to.box_middle_m = to_input.place(from.box.middle_m);
@@ -67,8 +89,9 @@ std::string possible_things_note(std::span<const PossibleThing> things) {
         text += (n ? "; " : "") + in_text(*told[n]);
     if (told.size() > listed) text += "; and others (`possible_things`)";
     return text +
-           ". Of what is one, say `apart` in corrections (--corrections), with a spot on it and "
-           "one on the floor; of what is none, `fixed`.";
+           ". Of what is one tick the parts in the report, or say `one_thing` and `apart` in "
+           "corrections (--corrections), with all its `spots_m` of scene.json and a spot on the "
+           "floor; of what is none say `fixed`.";
 }
 
 }  // namespace topple

@@ -12,8 +12,8 @@
 namespace topple {
 
 // What of the building may be a thing, by risk times probability.
-std::vector<PossibleThing> possible_things(const ObjectStage& objects, const SafetyStage& safety,
-                                           const ToInput& to_input);
+std::vector<PossibleThing> possible_things(const SolidCells& cells, const ObjectStage& objects,
+                                           const SafetyStage& safety, const ToInput& to_input);
 
 // Those that would be of medium or high category, in a sentence with their sizes and places and
 // what to do if they are things; "" where there are none.

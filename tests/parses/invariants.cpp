@@ -290,6 +290,7 @@ void check_possible_things(const Scene& scene) {
     for (const PossibleThing& thing : scene.possible_things) {
         expect_share(thing.probability, "the probability of a possible thing");
         expect(!thing.primitives.empty(), "a possible thing of nothing");
+        expect(thing.spots_m.size() == thing.primitives.size(), "a part without a spot");
         for (const std::int32_t p : thing.primitives) {
             expect(seen.insert(p).second, "two possible things share a part");
             const std::int32_t o = scene.primitives.at(static_cast<std::size_t>(p)).object;

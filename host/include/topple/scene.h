@@ -194,7 +194,8 @@ struct Alternative {
 // what it would be then. Corrections say which it is.
 struct PossibleThing {
     std::vector<std::int32_t> primitives;
-    double probability = 0;  // that it is a thing
+    double probability = 0;     // that it is a thing
+    std::vector<Vec3> spots_m;  // amid each of those, for corrections
     // Its box, as Object::size_m and box_middle_m.
     Vec3 size_m{}, box_middle_m{};
     double mass_kg = 0, barrier_J = 0, barrier_error_J = 0;

@@ -13,9 +13,9 @@ function listedPieces(scene) {
   return scene.furniture;
 }
 
-// "0.40 \u00d7 2.60 \u00d7 1.90 m, at 1.20 E, 3.00 N, 0.00 to 1.90 m high: 45 % likely a thing, and then 35 J, high"
+// "0.40 \u00d7 2.60 \u00d7 1.90 m, at 1.20 E, 3.00 N, 0.00 to 1.90 m high: 45 % likely a thing; then 35 J upset it: high"
 function furnitureText(scene, {box, size_m: size, probability, barrier_J: barrier, unsafety_category: category}) {
-  return `${[sizeText({size_m: size}), placeInShort(scene, box)].join(', at ')}: ${Math.round(100 * probability)} % likely a thing, and then ${number(barrier)} J, ${category}`;
+  return `${[sizeText({size_m: size}), placeInShort(scene, box)].join(', at ')}: ${Math.round(100 * probability)} % likely a thing; then ${number(barrier)} J upset it: ${category}`;
 }
 
 // On the page: how to tell that it is no building. tick(parts, box): chooses them.

@@ -46,8 +46,9 @@ function calmOnes(scene) {
 }
 
 // "3 things to act on, 8 to look at, 6 not judged"
-function headlineText(act, look, unseen) {
-  return [act ? `${plural(act, 'thing')} to act on` : 'Nothing to act on', ...look ? [`${look} to look at`] : [], ...unseen ? [`${unseen} not judged`] : []].join(', ');
+function headlineText(act, look, unseen, building = 0) {
+  return [act ? `${plural(act, 'thing')} to act on` : 'Nothing to act on', ...look ? [`${look} to look at`] : [],
+    ...building ? [`${building} in the building to check`] : [], ...unseen ? [`${unseen} not judged`] : []].join(', ');
 }
 
 function headlineOf(scene) {
@@ -55,7 +56,7 @@ function headlineOf(scene) {
   const unseen = unseenOnes(scene).length;
   if (nothingJudged(scene)) return `Nothing was judged: the scan does not show what holds ${unseen === 1 ? 'the one thing' : `the ${unseen} things`} here`;
   const possible = (scene.possible_things || []).filter(one => categories.indexOf(one.unsafety_category) >= categories.indexOf('medium'));
-  return headlineText(urgentOnes(scene, true).length, looksOf(scene).length + possible.length, unseen);
+  return headlineText(urgentOnes(scene, true).length, looksOf(scene).length, unseen, possible.length);
 }
 
 // Of the notes those that change what one may believe at all: units and poses in doubt, what is no scan, or a coarse one.

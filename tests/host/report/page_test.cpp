@@ -249,11 +249,11 @@ TEST_F(PageRisk, says_what_of_the_building_may_be_a_thing) {
     scene.possible_things[1].primitives = {2};
     scene.possible_things[1].unsafety_category = "none";
     open(scene, R"(
-        is(document.getElementById('headline').textContent, '2 things to act on, 1 to look at');
+        is(document.getElementById('headline').textContent, '2 things to act on, 1 in the building to check');
         const group = document.querySelector('.furniture').closest('.cards');
         group.open = true;
         is(group.textContent.includes('Counted as the building (1 may be a thing)'), true, group.textContent);
-        is(/A: .*45 % likely a thing, and then 35 J, high/.test(group.textContent), true, group.textContent);
+        is(/A: .*45 % likely a thing; then 35 J upset it: high/.test(group.textContent), true, group.textContent);
         is(document.querySelectorAll('.furniture li').length, 1);
         document.querySelector('.furniture button').click();
         is(document.querySelectorAll('#mend input:checked').length > 0, true);
