@@ -276,8 +276,12 @@ def test_other_threads_run_during_a_stage_and_a_device_serves_one(device):
     ticks, refused, done = 0, [], threading.Event()
 
     def work():
-        stages.normals(cloud, 0.03, device=device)
-        done.set()
+        while not done.is_set():
+            try:
+                stages.normals(cloud, 0.03, device=device)
+                done.set()
+            except topple.Error:  # the other one was first
+                time.sleep(0.001)
     thread = threading.Thread(target=work)
     thread.start()
     while not done.is_set():
