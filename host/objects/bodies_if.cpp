@@ -28,10 +28,7 @@ std::vector<Body> BodiesIf::operator()(std::vector<std::vector<std::int32_t>> pr
         bodies[o] = maker.made(std::move(primitives[o]), columns[o], o == 0);
     });
     std::vector<double> density;
-    for (const Body& body : bodies) {
-        const physics::MassProperties& all = body.candidate.body;
-        density.push_back(all.volume_m3 > 0 ? all.mass_kg / all.volume_m3 : 0);
-    }
+    for (const Body& body : bodies) density.push_back(body.candidate.body.density_kg_m3());
     const std::vector<physics::Symmetric> inertia =
         physics::inertia_of_objects(stage.masses.moments, stage.bodies, object_of, density);
     for (std::size_t o = 0; o < bodies.size(); ++o) bodies[o].inertia = inertia[o];

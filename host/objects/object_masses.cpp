@@ -121,10 +121,7 @@ ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
             hollow_out(solids, primitives, *known[o].wall_m, options.density_kg_m3, bodies,
                        object.inertia);
         if (object.weighed) weigh(primitives, *known[o].mass_kg, bodies, object.inertia);
-        for (const std::int32_t p : primitives) {
-            const physics::MassProperties& body = bodies[p];
-            out.density_kg_m3[p] = body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0;
-        }
+        for (const std::int32_t p : primitives) out.density_kg_m3[p] = bodies[p].density_kg_m3();
     }
     const Table<ObjectId, double> mass =
         sums(&physics::MassProperties::mass_kg, object_of, bodies, objects);

@@ -135,10 +135,9 @@ void find_possible_things(const BodiesIf& bodies_if, ObjectStage& out) {
 // The building's own, with that of what may be a thing.
 void take_whole_inertia(ObjectStage& out) {
     Body& building = out.objects.front();
-    const physics::MassProperties& body = building.candidate.body;
     std::vector<std::int32_t> of_building;
     for (const std::int32_t o : out.object_of_primitive) of_building.push_back(o == 0 ? 0 : -1);
-    const std::array density{body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0};
+    const std::array density{building.candidate.body.density_kg_m3()};
     building.inertia =
         physics::inertia_of_objects(out.masses.moments, out.bodies, of_building, density).front();
 }
@@ -148,11 +147,10 @@ void collect_objects(const SolidScene& solids, const BodyMaker& maker, const Par
                      ThreadPool& threads, HandCorrections& hand, ObjectStage& out) {
     const Table<PrimitiveId, std::int32_t>& group = out.grouping.group;
     const std::size_t objects = object_count(out);
-    Table<ObjectId, KnownMass> known =
-        hand.masses(out.object_of_primitive, objects, grounded_object(out));
+    const std::int32_t grounded = grounded_object(out);
+    Table<ObjectId, KnownMass> known = hand.masses(out.object_of_primitive, objects, grounded);
     known.resize(objects + out.possible_things.size());
-    out.masses = weigh_objects(solids, out.body_of_primitive, known, grounded_object(out), options,
-                               out.bodies);
+    out.masses = weigh_objects(solids, out.body_of_primitive, known, grounded, options, out.bodies);
     Table<ObjectId, std::vector<std::int32_t>> members(objects);
     for (std::size_t p = 0; p < group.size(); ++p)
         members[out.object_of_primitive[p]].push_back(static_cast<std::int32_t>(p));
@@ -161,11 +159,11 @@ void collect_objects(const SolidScene& solids, const BodyMaker& maker, const Par
     out.objects.resize(members.size());
     threads.each(members.size(), 1, [&](std::size_t o) {
         Body& object = out.objects[o];
-        object = maker.made(std::move(members[o]), columns[o],
-                            grounded_object(out) == static_cast<std::int32_t>(o));
+        object =
+            maker.made(std::move(members[o]), columns[o], grounded == static_cast<std::int32_t>(o));
         take_mass(out.masses.objects[o], object);
     });
-    if (grounded_object(out) == 0) take_whole_inertia(out);
+    if (grounded == 0) take_whole_inertia(out);
     Table<ObjectId, graph::Carried> carried;
     for (const Body& o : out.objects) carried.push_back({o.grounded, o.candidate.body.mass_kg});
     out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
@@ -334,9 +332,9 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         graph::pair_probabilities(out.contacts, parts.joints, parts.shell, hand.links());
     const physics::PartHulls hulls = stage("supports", [&] {
         // All but the building's, and what of that may be a thing.
+        const std::int32_t grounded = grounded_object(out);
         std::vector<bool> loose;
-        for (const std::int32_t o : out.body_of_primitive)
-            loose.push_back(o != grounded_object(out));
+        for (const std::int32_t o : out.body_of_primitive) loose.push_back(o != grounded);
         return physics::part_hulls(cells, boundary, loose, device.threads());
     });
     const BodyMaker maker = stage("barriers", [&] {

@@ -20,6 +20,9 @@ struct MassProperties {
     std::uint64_t voxels = 0;  // that are it for the most part
     double volume_m3 = 0, mass_kg = 0;
     Vec3 center{};  // centre of mass
+
+    // Of what has no volume 0.
+    double density_kg_m3() const { return volume_m3 > 0 ? mass_kg / volume_m3 : 0; }
 };
 
 // Mass properties of `count` labels over the cells (kernel segmented_sum; exact integer sums), of

@@ -72,9 +72,7 @@ SparseGrid SparseGrid::of_points(device::Device& device, const device::Slice<flo
     device::Queue queue(device);
     for (const Tile& tile : tiles(device, count)) {
         const auto of = [&](const device::Slice<float>& all) {
-            return device::Slice<float>{{all.range.memory,
-                                         all.range.offset + std::uint64_t{tile.first} * 4,
-                                         std::uint64_t{tile.count} * 4}};
+            return device::Slice<float>{part(Words{all.range}, tile.first, tile.count).range};
         };
         queue.add<kernels::GridKeys>(tile.count,
                                      {.x = of(x),

@@ -24,7 +24,7 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
     for (std::size_t p = 0; p < solids.primitives(); ++p)
         s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
     for (const physics::MassProperties& b : objects.bodies)
-        s.density_kg_m3.push_back(b.volume_m3 > 0 ? b.mass_kg / b.volume_m3 : 0);
+        s.density_kg_m3.push_back(b.density_kg_m3());
     return s;
 }
 

@@ -335,8 +335,7 @@ TEST_P(Primitives, GatherAndScatterMatchTheOracle) {
         Random random(count);
         Words index(count + 2);
         std::iota(index.begin(), index.end(), 0u);
-        for (std::size_t i = index.size(); i > 1; --i)
-            std::swap(index[i - 1], index[random.below(i)]);
+        random.shuffle(index);
         const Words values = words(random, count + 2);
         const Buffer at = buffer(index, "index"), from = buffer(values, "from");
         Guarded<std::uint32_t> gathered(*device, count + 2, "gathered"),
@@ -377,7 +376,7 @@ TEST_P(Primitives, ComponentsMatchTheOracle) {
         Words from, to;
         Words name(g.nodes);
         std::iota(name.begin(), name.end(), 0u);
-        for (std::size_t i = name.size(); i > 1; --i) std::swap(name[i - 1], name[random.below(i)]);
+        random.shuffle(name);
         for (std::size_t e = 0; e < g.edges; ++e) {
             // Of a chain each tenth link is missing; a node beyond the last is none.
             from.push_back(g.chain ? name[e] : random.below(g.nodes + 1u));

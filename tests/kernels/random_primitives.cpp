@@ -98,7 +98,7 @@ void gather(RandomBatch& to, Random& random, std::uint32_t size) {
 void scatter(RandomBatch& to, Random& random, std::uint32_t size) {
     Words index(size);
     std::iota(index.begin(), index.end(), random.below(3));
-    for (std::size_t i = size; i > 1; --i) std::swap(index[i - 1], index[random.below(i)]);
+    random.shuffle(index);
     primitives::scatter(to.queue, to.in(index), to.in(naturals(random, size)), out(to, size));
 }
 

@@ -17,7 +17,7 @@ using Words = std::vector<std::uint32_t>;
 Words shuffled(Random& random, std::uint32_t count) {
     Words out(count);
     std::iota(out.begin(), out.end(), 0u);
-    for (std::size_t i = count; i > 1; --i) std::swap(out[i - 1], out[random.below(i)]);
+    random.shuffle(out);
     return out;
 }
 

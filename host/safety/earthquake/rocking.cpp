@@ -148,7 +148,8 @@ void run_batch(device::Device& device, const device::Buffer<float>& body, std::s
                                      .chunk_last = from + most_chunks});
     }
     queue.run();
-    const std::vector<float> found = outcome.download();
+    std::vector<float> found(4 * events);  // without what a motion goes on from
+    outcome.download(std::span(found));
     for (std::size_t e = 0; e < events; ++e) {
         if (batch.source[e] == Batch::none) continue;
         out[batch.source[e]] = {found[e], found[e + events], found[e + 2 * events],

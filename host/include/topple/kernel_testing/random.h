@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace topple::test {
@@ -29,6 +30,11 @@ class Random {
         std::vector<float> out(count);
         for (float& v : out) v = uniform(low, high);
         return out;
+    }
+    // Durstenfeld's.
+    template <class List>
+    void shuffle(List& list) {
+        for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[below(i)]);
     }
     double normal() {
         return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * M_PI * uniform());
