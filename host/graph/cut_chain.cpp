@@ -73,21 +73,40 @@ void CutChain::group_by(TableView<NodeId, std::int32_t> start) {
     }
 }
 
-bool CutChain::step(double temperature) {
-    if (!proposed_) {
-        const bool possible = draw();
-        // Drawn always, so that the stream of random numbers doesn't depend on the outcome.
-        const double u = random_.uniform();
-        if (!possible) return true;
-        // Metropolis-Hastings, Eq. 11: taken for a change of the energy below this one, that is for
-        // ln u < ln ratio - change / T.
-        most_change_ = temperature *
-                       (log_cut_ratio_ - std::log(std::max(u, std::numeric_limits<double>::min())));
-        if (ruled_out(most_change_)) return true;
+bool CutChain::step(const Temperatures& temperature) {
+    const Random before = random_;
+    wanted_.clear();
+    if (propose(temperature(0))) {
+        if (!wanted_.empty()) {
+            // A flip that is left changes nothing but the random numbers: so what the next ones
+            // would ask for, were all left, is known by now.
+            for (unsigned ahead = 1; ahead < most_ahead && wanted_.size() < most_wanted; ++ahead)
+                propose(temperature(ahead));
+            random_ = before;
+            return false;
+        }
+        if (change(from_energy_, to_energy_) < most_change_) take();
     }
-    proposed_ = !find_energies();
-    if (proposed_) return false;
-    if (change(from_energy_, to_energy_) < most_change_) take();
+    return true;
+}
+
+// Draws a flip, and finds its energies, or adds them to what is wanted. False where it can't be
+// taken whatever they are.
+bool CutChain::propose(double temperature) {
+    const bool possible = draw();
+    // Drawn always, so that the stream of random numbers doesn't depend on the outcome.
+    const double u = random_.uniform();
+    if (!possible) return false;
+    // Metropolis-Hastings, Eq. 11: taken for a change of the energy below this one, that is for
+    // ln u < ln ratio - change / T.
+    most_change_ =
+        temperature * (log_cut_ratio_ - std::log(std::max(u, std::numeric_limits<double>::min())));
+    if (ruled_out(most_change_)) return false;
+    const std::optional<double> from = energies_.known(from_key_), to = energies_.known(to_key_);
+    if (!from) want(from_key_, group_less_moved());
+    if (!to) want(to_key_, group_with_moved());
+    from_energy_ = from.value_or(0);
+    to_energy_ = to.value_or(0);
     return true;
 }
 
@@ -104,17 +123,6 @@ bool CutChain::ruled_out(double most_change) {
 
 void CutChain::want(const GroupKey& key, GroupQuery group) {
     wanted_.push_back({key, std::move(group)});
-}
-
-bool CutChain::find_energies() {
-    wanted_.clear();
-    const std::optional<double> from = energies_.known(from_key_), to = energies_.known(to_key_);
-    if (!from) want(from_key_, group_less_moved());
-    if (!to) want(to_key_, group_with_moved());
-    if (!wanted_.empty()) return false;
-    from_energy_ = *from;
-    to_energy_ = *to;
-    return true;
 }
 
 void CutChain::take() {

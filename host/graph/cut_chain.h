@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -61,8 +62,10 @@ class CutChain {
 
     // Takes the energy of the start; before all steps.
     bool begin();
-    // Proposes one flip and takes it or leaves it.
-    bool step(double temperature);
+    // Proposes one flip and takes it or leaves it. Of the temperatures, those of the flips after it
+    // serve to ask for energies ahead of time.
+    using Temperatures = std::function<double(unsigned ahead)>;
+    bool step(const Temperatures& temperature);
     const std::vector<EnergyCache::Missing>& wanted() const { return wanted_; }
 
     double energy() const { return energy_; }
@@ -75,6 +78,8 @@ class CutChain {
     GroupQuery group_less_moved() const;
     GroupQuery group_with_moved() const;
 
+    static constexpr unsigned most_ahead = 32, most_wanted = 16;
+    bool propose(double temperature);
     bool draw();
     bool grow_component(NodeId seed);
     void sort_moved();
@@ -87,7 +92,6 @@ class CutChain {
     double change(double from_after, double to_after) const;
     bool ruled_out(double most_change);
     void want(const GroupKey& key, GroupQuery group);
-    bool find_energies();
     void take();
 
     const CutProblem& problem_;
@@ -106,7 +110,6 @@ class CutChain {
     std::vector<std::int32_t> moved_;
     LabelId from_ = 0, to_ = 0;
     double most_change_ = 0;    // of the energy, with which it is taken
-    bool proposed_ = false;     // and waits for energies
     double log_cut_ratio_ = 0;  // ln of the products of (1 - q_e) in Eq. 11
     GroupKey from_key_, to_key_;
     double from_energy_ = 0, to_energy_ = 0;

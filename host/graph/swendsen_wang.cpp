@@ -69,9 +69,11 @@ class Run {
             out_.best_energy = chain_.energy();
         }
         for (; step_ < options_.anneal_steps; ++step_) {
-            const double along = schedule_.at(step_);
-            if (along >= 1 || stopped()) break;
-            if (!chain_.step(schedule_.temperature(along))) return true;
+            if (schedule_.at(step_) >= 1 || stopped()) break;
+            const auto temperature = [this](unsigned ahead) {
+                return schedule_.temperature(schedule_.at(step_ + ahead));
+            };
+            if (!chain_.step(temperature)) return true;
             // A margin, so that rounding in the running sum is not taken for an improvement.
             if (chain_.energy() < out_.best_energy - 1e-9) {
                 out_.best_energy = chain_.energy();

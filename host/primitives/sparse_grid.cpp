@@ -2,12 +2,19 @@
 #include "topple/kernels/primitives/sparse_grid.h"
 
 #include <array>
+#include <bit>
+#include <optional>
 #include <string>
 
+#include "grid_bounds.hpp"
+#include "grid_find.hpp"
 #include "grid_keys.hpp"
 #include "grid_masks.hpp"
+#include "grid_pack.hpp"
 #include "grid_shift.hpp"
+#include "grid_unpack.hpp"
 #include "search_keys.hpp"
+#include "topple/kernels/primitives/reduce.h"
 #include "topple/kernels/primitives/runs.h"
 #include "topple/kernels/primitives/sort.h"
 
@@ -42,6 +49,86 @@ std::uint32_t word_of(const SparseGrid::Array& array, std::uint64_t at) {
     array.download(std::span(&word, 1), at);
     return word;
 }
+
+// Keys in one word each, as far as the leaves between the least and the greatest can be told apart
+// by so few bits.
+class Packing {
+  public:
+    // Waits. None where a word is too short.
+    static std::optional<Packing> of(device::Queue& queue, Scratch& scratch, const Words& low,
+                                     const Words& high) {
+        constexpr std::uint64_t group = 1024;  // REDUCE_WORDS
+        const std::uint64_t groups = (size(low) + group - 1) / group;
+        const std::uint64_t stride = (groups + slice_words - 1) / slice_words * slice_words;
+        const auto bounds = scratch.take(6 * stride);
+        for (const Tile& tile : tiles(queue.device(), size(low), group * slice_words)) {
+            const std::uint64_t first = tile.first / group,
+                                count = (tile.count + group - 1) / group;
+            queue.add<kernels::GridBounds>(count,
+                                           {.low = part(low, tile.first, tile.count),
+                                            .high = part(high, tile.first, tile.count),
+                                            .dst = part(bounds, first, 6 * stride - first)},
+                                           {tile.count, static_cast<std::uint32_t>(stride)});
+        }
+        const SparseGrid::Array ends(queue.device(), 6 * slice_words, "bounds of leaves");
+        for (std::uint64_t a = 0; a < 6; ++a)
+            reduce(queue, scratch, a < 3 ? Reduction::least : Reduction::greatest,
+                   part(bounds, a * stride, groups), ends.slice(a * slice_words, 1));
+        queue.run();
+        const std::vector<std::uint32_t> words = ends.download();
+        const auto at = [&](std::size_t a) { return words[a * slice_words]; };
+        const auto bits = [&](std::size_t a) {
+            return static_cast<std::uint32_t>(std::bit_width(at(a + 3) - at(a)));
+        };
+        if (at(0) > at(3)) return Packing({}, cell_bits);  // of none
+        const unsigned all = bits(0) + bits(1) + bits(2) + cell_bits;
+        if (all >= 32) return std::nullopt;
+        return Packing({.count = 0,
+                        .x = at(0),
+                        .y = at(1),
+                        .z = at(2),
+                        .bits_y = bits(1),
+                        .bits_z = bits(2),
+                        .none = 0},
+                       all);
+    }
+
+    // What stands for no cell is above all others.
+    std::uint32_t none() const { return params_.none; }
+    unsigned bits() const { return bits_ + 1; }
+
+    void pack(device::Queue& queue, const Words& low, const Words& high, const Words& to) const {
+        for (const Tile& tile : tiles(queue.device(), size(low)))
+            queue.add<kernels::GridPack>(tile.count,
+                                         {.low = part(low, tile.first, tile.count),
+                                          .high = part(high, tile.first, tile.count),
+                                          .packed = part(to, tile.first, tile.count)},
+                                         of(tile));
+    }
+    // The first ones, as many as there is room for.
+    void unpack(device::Queue& queue, const Words& from, const Words& low,
+                const Words& high) const {
+        for (const Tile& tile : tiles(queue.device(), size(low)))
+            queue.add<kernels::GridUnpack>(tile.count,
+                                           {.packed = part(from, tile.first, tile.count),
+                                            .low = part(low, tile.first, tile.count),
+                                            .high = part(high, tile.first, tile.count)},
+                                           of(tile));
+    }
+
+  private:
+    static constexpr unsigned cell_bits = 9;
+    Packing(kernels::GridPackParams params, unsigned bits) : params_(params), bits_(bits) {
+        params_.none = 1u << bits;
+    }
+    kernels::GridPackParams of(const Tile& tile) const {
+        kernels::GridPackParams params = params_;
+        params.count = tile.count;
+        return params;
+    }
+    kernels::GridPackParams params_;
+    unsigned bits_;  // of a cell
+};
 
 }  // namespace
 
@@ -98,16 +185,34 @@ SparseGrid SparseGrid::of_keys(device::Device& device, const Words& low, const W
         return word_of(number, 0);
     };
     {
-        const auto sorted_low = scratch.take(count), sorted_high = scratch.take(count),
-                   starts = scratch.take(count + 1);
-        Array low_of(device, count, "low words of cells"), high_of(device, count, "high words");
-        sort(queue, scratch, {low, high}, {sorted_low, sorted_high});
-        unique(queue, scratch, Segments::of_keys(sorted_low, sorted_high), low_of, high_of, starts,
-               number);
+        // A sort takes a pass for each 8 bits, so as few bits as may be.
+        const std::optional<Packing> packing = Packing::of(queue, scratch, low, high);
+        const bool wide = !packing;
+        const auto packed = scratch.take(wide ? 0 : count), starts = scratch.take(count + 1),
+                   sorted_low = scratch.take(count), sorted_high = scratch.take(wide ? count : 0);
+        Array low_of(device, count, "low words of cells"),
+            high_of(device, wide ? count : 0, "high words of cells");
+        if (wide) {
+            sort(queue, scratch, {low, high}, {sorted_low, sorted_high});
+        } else {
+            packing->pack(queue, low, high, packed);
+            sort(queue, scratch, {packed}, {sorted_low}, packing->bits());
+        }
+        unique(queue, scratch,
+               wide ? Segments::of_keys(sorted_low, sorted_high) : Segments::of_keys(sorted_low),
+               low_of, high_of, starts, number);
         out.cells = run_for_number();
         // What is no cell stands behind all.
-        if (out.cells > 0 && word_of(high_of, out.cells - 1) == none) --out.cells;
-        keep(queue, low_of, high_of, out.cells, out.cell_low, out.cell_high);
+        const std::uint32_t no_cell = wide ? none : packing->none();
+        if (out.cells > 0 && word_of(wide ? high_of : low_of, out.cells - 1) == no_cell)
+            --out.cells;
+        if (wide) {
+            keep(queue, low_of, high_of, out.cells, out.cell_low, out.cell_high);
+        } else {
+            out.cell_low = Array(device, out.cells, "low words of cells");
+            out.cell_high = Array(device, out.cells, "high words of cells");
+            packing->unpack(queue, low_of, out.cell_low, out.cell_high);
+        }
         queue.run();
     }
     const auto of_low = scratch.take(out.cells), of_high = scratch.take(out.cells),
@@ -143,9 +248,23 @@ SparseGrid SparseGrid::dilated() const {
     return of_keys(device, low, high);
 }
 
-void SparseGrid::find(device::Queue& queue, const Words& low_of, const Words& high_of,
-                      const Words& place) const {
-    search(queue, cell_low, cell_high, low_of, high_of, place);
+void SparseGrid::find(device::Queue& queue, const Coordinates& i, const Coordinates& j,
+                      const Coordinates& k, const Words& place) const {
+    for (const Coordinates* c : {&j, &k})
+        check_size(Words{c->range}, i.range.bytes / sizeof(std::int32_t), "a coordinate of cells");
+    check_size(place, size(Words{i.range}), "the places of cells");
+    for (const Tile& tile : tiles(queue.device(), size(Words{i.range}))) {
+        const auto of = [&](const Coordinates& all) {
+            return Coordinates{part(Words{all.range}, tile.first, tile.count).range};
+        };
+        queue.add<kernels::GridFind>(tile.count,
+                                     {.i = of(i),
+                                      .j = of(j),
+                                      .k = of(k),
+                                      .grid = *this,
+                                      .place = part(place, tile.first, tile.count)},
+                                     {tile.count, leaves});
+    }
 }
 
 void SparseGrid::neighbours(device::Queue& queue, Scratch& scratch, std::int32_t di,

@@ -41,11 +41,3 @@
         for (int k = 0; k < half_of; k++) { T a = strand[k]; T b = strand[k + half_of]; strand[k] = step; } \
     }                                                                                                \
     dst[GLOBAL_ID] = strand[0];
-
-// Keys of a sparse grid's cells (kernels/primitives/grid_*): their coordinates plus 2^20, 21 bits each, those of the
-// leaf of 8 x 8 x 8 cells above those of the cell in it, x above y above z. So a leaf's cells are neighbours in order, and
-// the key of its first one, whose lowest 9 bits are 0, is the leaf's. GRID_NONE twice: of no cell.
-#define GRID_NONE 0xffffffffu
-#define GRID_BIAS 1048576
-#define GRID_LOW(i, j, k) ((((j) >> 3) << 27) | (((k) >> 3) << 9) | (((i) & 7u) << 6) | (((j) & 7u) << 3) | ((k) & 7u))
-#define GRID_HIGH(i, j) ((((i) >> 3) << 13) | ((j) >> 8))

@@ -71,10 +71,33 @@ STRUCT(GridShiftParams) {
     uint keep;   // bits of the low word that stay
 } STRUCT_END(GridShiftParams)
 
+// grid_bounds
+STRUCT(GridBoundsParams) {
+    uint count;   // keys
+    uint stride;  // words from one array of bounds to the next
+} STRUCT_END(GridBoundsParams)
+
+// grid_pack, grid_unpack
+STRUCT(GridPackParams) {
+    uint count;   // keys
+    uint x;       // least leaf, plus 2^17
+    uint y;
+    uint z;
+    uint bits_y;  // of a leaf's y less the least
+    uint bits_z;
+    uint none;    // what stands for no cell
+} STRUCT_END(GridPackParams)
+
 // grid_masks
 STRUCT(GridMasksParams) {
     uint leaves;
 } STRUCT_END(GridMasksParams)
+
+// grid_find
+STRUCT(GridFindParams) {
+    uint count;   // cells that are looked for
+    uint leaves;  // of the grid
+} STRUCT_END(GridFindParams)
 
 // search_keys
 STRUCT(SearchKeysParams) {

@@ -82,6 +82,17 @@ def without_comments(text):
     return re.sub(r'//[^\n]*', '', text)
 
 
+GRID_ARRAYS = ('leaf_low', 'leaf_high', 'first', 'mask')
+
+
+def spell_out_grids(text):
+    """Each GRID_IN(number, name) as the four buffers that a sparse grid is, in the same line."""
+    def buffers(grid):
+        return ' '.join(f'BUFFER_IN({int(grid[1]) + n}, uint, {grid[2]}_{array})' for n, array in enumerate(GRID_ARRAYS))
+
+    return re.sub(r'\bGRID_IN\(\s*(\d+)\s*,\s*(\w+)\s*\)', buffers, text)
+
+
 def kernels_in(source):
     """The kernels of a file that has several, by name: for each the file with the lines of all others empty, so that numbers of
     lines, and what they share, stay."""
@@ -121,9 +132,12 @@ class Kernel:
 
     def __init__(self, source, name=None):
         """name: of the kernel, where the file is not called after it."""
-        self.source = source
+        self.source = copy.copy(source)
         path = source.name
         code = without_comments(source.text)
+        self.grids = re.findall(r'\bGRID_IN\(\s*\d+\s*,\s*(\w+)\s*\)', code)
+        self.source.text = spell_out_grids(source.text)
+        code = spell_out_grids(code)
         self.name = name or os.path.basename(path).rsplit('.', 1)[0]
         if self.name == 'params':
             fail(path, 'params.hpp is the header of the parameters; call the kernel otherwise')
@@ -227,13 +241,20 @@ def call_divide(words):
     return out
 
 
-def shared_text(params, functions=None):
-    """What stands before the kernel in each form: parameters, and functions where there are some."""
-    text = params.quoted()
+def shared_functions(kernel, functions=None):
+    """What a kernel may call: words of grids and of halves where it or they use them, and functions where there are some."""
+    code = without_comments(kernel.source.text + (functions.text if functions else ''))
+    text = prelude('grid.h') if 'GRID_' in code or kernel.grids else ''
+    text += prelude('half.h') if re.search(r'\b(?:half_bits|bits_half)\b', code) else ''
     if functions:
         check_dialect(functions.name, functions.text)
-        text += '\n' + functions.quoted()
-    return text + '\n'
+        text += functions.quoted() + '\n'
+    return text
+
+
+def shared_text(params, functions=''):
+    """What stands before the kernel in each form: parameters, and what it may call."""
+    return params.quoted() + '\n' + functions
 
 
 def opencl(kernel, common, checks=''):
@@ -284,8 +305,16 @@ using uint = std::uint32_t;
 
 def header(kernel, fields, namespace):
     camel = ''.join(w.capitalize() for w in kernel.name.split('_'))
-    args = '\n'.join(f'        ::topple::device::Argument<{HOST_TYPES[t]}> {n};' for _, t, n in kernel.bindings)
-    binds = '\n'.join(f'        ranges.push_back(args.{n}.range);' for _, _, n in kernel.bindings)
+    of_grid = {f'{grid}_{array}': (grid, array) for grid in kernel.grids for array in GRID_ARRAYS}
+    args, binds = [], []
+    for _, kind, name in kernel.bindings:
+        grid, array = of_grid.get(name, (None, None))
+        if grid is None:
+            args.append(f'        ::topple::device::Argument<{HOST_TYPES[kind]}> {name};')
+        elif array == GRID_ARRAYS[0]:
+            args.append(f'        ::topple::device::GridArgument {grid};')
+        binds.append(f'        ranges.push_back(args.{f"{grid}.{array}" if grid else name}.range);')
+    args, binds = '\n'.join(args), '\n'.join(binds)
     asserts = '\n'.join(f'static_assert(offsetof({kernel.params_type}, {n}) == {4 * i});'
                         for i, (_, n) in enumerate(fields))
     return f'''// Generated from {kernel.source.name}.
@@ -435,15 +464,16 @@ def main():
         write(os.path.join(options.out, 'params.hpp'), params_header(params, options.namespace))
         return
     functions = options.functions and Source(options.functions, options.root)
-    common = shared_text(params, functions)
     kernel = Kernel(Source(options.kernel, options.root))
+    shared = shared_functions(kernel, functions)
+    common = shared_text(params, shared)
     fields = params_fields(params, kernel.params_type)
     at = os.path.join(options.out, kernel.name)
     form, checked = (kernel, spirv(kernel, common, options.glslang, at), opencl(kernel, common)), None
     if options.checked:
         import check_bounds  # which lies beside this file
 
-        own, shared = shared_text(params), functions.quoted() + '\n' if functions else ''
+        own = shared_text(params)
         cpp, cl, comp = (check_bounds.checked(kernel, shared, backend, options.checked) for backend in ('native', 'opencl', 'vulkan'))
         checked = (cl, spirv(comp, own, options.glslang, at + '.checked', prelude('glsl', 'checks.glsl')),
                    opencl(cl, own, prelude('opencl', 'checks.cl')))

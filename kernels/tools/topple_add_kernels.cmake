@@ -47,8 +47,8 @@ function(topple_add_kernels TARGET)
   set(HEADERS ${GENERATED}/params.hpp)
   add_custom_command(OUTPUT ${HEADERS} COMMAND ${CALL} DEPENDS ${TOOL} ${ARG_PARAMS}
                      COMMENT "Parameters of the kernels of ${TARGET}" VERBATIM)
-  set(INPUTS ${TOOL} ${HOME}/tools/check_bounds.py ${ARG_PARAMS} ${HOME}/dialect/glsl/prelude.glsl
-             ${HOME}/dialect/opencl/prelude.cl)
+  set(INPUTS ${TOOL} ${HOME}/tools/check_bounds.py ${ARG_PARAMS} ${HOME}/dialect/grid.h
+             ${HOME}/dialect/glsl/prelude.glsl ${HOME}/dialect/opencl/prelude.cl)
   if(ARG_FUNCTIONS)
     cmake_path(ABSOLUTE_PATH ARG_FUNCTIONS)
     list(APPEND CALL --functions ${ARG_FUNCTIONS})

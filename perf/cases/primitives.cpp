@@ -150,17 +150,19 @@ Prepared unique_wide_keys(device::Device& device) {
                     });
 }
 
-// The leaves beside those of a grid of 2 million cells, and its cells, one after the other. Bytes:
-// keys and what is found of them; what the searches read of the list stays in caches.
+// The leaves beside those of a grid of 2 million cells, and which of its cells others are, one
+// after the other. Bytes: what is looked for and what is found; what is read of the grid stays in
+// caches.
 Prepared sparse_grid(device::Device& device) {
     constexpr std::uint32_t cells = count / 8;
     const auto on = std::make_shared<On>(device);
-    const Words key = noise(cells, 30);
+    const auto coordinates = std::make_shared<std::array<device::Buffer<std::int32_t>, 3>>();
+    std::array<std::vector<std::int32_t>, 3> c;
     Words low, high;
-    for (const std::uint32_t k : key) {
-        const std::uint64_t cell = primitives::grid_key(static_cast<std::int32_t>(k & 1023),
-                                                        static_cast<std::int32_t>(k >> 10 & 1023),
-                                                        static_cast<std::int32_t>(k >> 20 & 63));
+    for (const std::uint32_t k : noise(cells, 30)) {
+        for (std::size_t a = 0; a < 3; ++a)
+            c[a].push_back(static_cast<std::int32_t>(k >> 10 * a & (a < 2 ? 1023 : 63)));
+        const std::uint64_t cell = primitives::grid_key(c[0].back(), c[1].back(), c[2].back());
         low.push_back(static_cast<std::uint32_t>(cell));
         high.push_back(static_cast<std::uint32_t>(cell >> 32));
     }
@@ -168,14 +170,16 @@ Prepared sparse_grid(device::Device& device) {
     on->in(high, "high");
     const auto grid = std::make_shared<primitives::SparseGrid>(
         primitives::SparseGrid::of_keys(device, on->inputs[0], on->inputs[1]));
+    for (std::size_t a = 0; a < 3; ++a) (*coordinates)[a] = upload(device, c[a], "cells");
     on->out(cells, "places");
     on->out(grid->leaves, "leaves beside");
-    return prepared(
-        on, 12.0 * (cells + grid->leaves),
-        [grid](device::Queue& queue, primitives::Scratch& scratch, Arrays in, Arrays out) {
-            grid->find(queue, in[0], in[1], out[0]);
-            grid->neighbours(queue, scratch, 1, 0, 0, out[1]);
-        });
+    return prepared(on, 16.0 * cells + 12.0 * grid->leaves,
+                    [grid, coordinates](device::Queue& queue, primitives::Scratch& scratch, Arrays,
+                                        Arrays out) {
+                        const auto& [i, j, k] = *coordinates;
+                        grid->find(queue, i, j, k, out[0]);
+                        grid->neighbours(queue, scratch, 1, 0, 0, out[1]);
+                    });
 }
 
 Prepared segmented_sums(device::Device& device) {

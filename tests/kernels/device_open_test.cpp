@@ -5,6 +5,7 @@
 #include "device/vulkan/vulkan_device.h"
 #include "dialect_probe.hpp"
 #include "errors.h"
+#include "oracle/arithmetic_oracle.h"
 #include "support_function.hpp"
 #include "topple/kernel_testing/compare.h"
 #include "topple/kernel_testing/each_backend.h"
@@ -239,8 +240,10 @@ struct Numbers {
 // All pairs of special numbers, then random bit patterns.
 Numbers numbers() {
     const float inf = std::numeric_limits<float>::infinity();
-    const float special[] = {0.0f, -0.0f, 1.0f,     -1.0f, 1e-40f, -1e-40f,   3.4e38f, -3.4e38f,
-                             0.5f, -2.5f, 1.5e-38f, inf,   -inf,   8388609.f, 0.1f,    -0.3f};
+    const float special[] = {0.0f, -0.0f, 1.0f, -1.0f, 1e-40f, -1e-40f, 3.4e38f, -3.4e38f, 0.5f,
+                             -2.5f, 1.5e-38f, inf, -inf, 8388609.f, 0.1f, -0.3f,
+                             // Between two halves, and at the ends of what they reach.
+                             65519.0f, 65520.0f, 0x1p-25f, -0x3p-25f, 0x801p-11f, -0x803p-11f};
     const std::uint32_t words[] = {0, 1, 31, 32, 0x7fffffff, 0x80000000, 0xffffffff, 12345};
     Numbers out;
     for (const float x : special) {
@@ -286,7 +289,10 @@ std::vector<std::uint32_t> expected_words(const Numbers& in) {
         const auto clamped = static_cast<std::int32_t>(-std::min<std::int64_t>(u & 0xffff, 1000));
         out.insert(out.end(),
                    {bits(in.a[i]), u + v, u * v, u / (v / 2 + 1), (u >> v % 32) ^ (u << v % 32),
-                    static_cast<std::uint32_t>(clamped) + (v & 0xffff)});
+                    static_cast<std::uint32_t>(clamped) + (v & 0xffff),
+                    static_cast<std::uint32_t>(std::uint64_t{u} * v >> 32),
+                    static_cast<std::uint32_t>(std::popcount(u)), oracle::half_bits(in.a[i]),
+                    bits(oracle::of_half_bits(v & 0xffff))});
     }
     return out;
 }
@@ -320,7 +326,7 @@ TEST_P(DeviceDialect, RoundsAsIeee754OnEveryBackend) {
     const device::Buffer<float> a(*device, in.a, "a"), b(*device, in.b, "b");
     const device::Buffer<std::uint32_t> m(*device, in.m, "m"), n(*device, in.n, "n");
     const Guarded<float> f(*device, 10ull * count, "f");
-    const Guarded<std::uint32_t> w(*device, 6ull * count, "w");
+    const Guarded<std::uint32_t> w(*device, 10ull * count, "w");
     Guarded<std::uint32_t> line(*device, count, "line");
     line.upload(std::vector<std::uint32_t>(count, 7));
     run_kernel<kernels::DialectProbe>(

@@ -294,7 +294,7 @@ void dialect_probe(RandomBatch& to, Random& random, std::uint32_t size) {
                                          .m = to.in(naturals(random, size)),
                                          .n = to.in(naturals(random, size)),
                                          .f = to.out<float>(10 * size),
-                                         .w = to.out<std::uint32_t>(6 * size),
+                                         .w = to.out<std::uint32_t>(10 * size),
                                          .line = to.out<std::uint32_t>(size)},
                                         {.count = size});
 }

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "grid_bounds.hpp"
+#include "grid_find.hpp"
+#include "grid_keys.hpp"
+#include "grid_masks.hpp"
+#include "grid_pack.hpp"
+#include "grid_shift.hpp"
+#include "grid_unpack.hpp"
 #include "random_dispatches.h"
 #include "topple/kernels/primitives/components.h"
 #include "topple/kernels/primitives/indexed.h"
@@ -6,6 +13,7 @@
 #include "topple/kernels/primitives/runs.h"
 #include "topple/kernels/primitives/scan.h"
 #include "topple/kernels/primitives/sort.h"
+#include "topple/kernels/primitives/sparse_grid.h"
 
 namespace topple::test {
 namespace random_primitive {
@@ -119,6 +127,101 @@ void components(RandomBatch& to, Random& random, std::uint32_t size) {
     primitives::connected_components(to.queue, to.scratch, ends(), ends(), out(to, size));
 }
 
+void grid_keys(RandomBatch& to, Random& random, std::uint32_t size) {
+    const auto axis = [&] {
+        return to.in(random.below(2) ? reals(random, size, 1e7f) : unbounded(random, size, true));
+    };
+    to.queue.add<kernels::GridKeys>(
+        size, {.x = axis(), .y = axis(), .z = axis(), .low = out(to, size), .high = out(to, size)},
+        {size, positive(random, 1, 100)[0]});
+}
+
+void grid_shift(RandomBatch& to, Random& random, std::uint32_t size) {
+    const auto way = [&] { return static_cast<std::int32_t>(random.word()) >> random.below(32); };
+    to.queue.add<kernels::GridShift>(size,
+                                     {.low = keys(to, random, size),
+                                      .high = keys(to, random, size),
+                                      .low_to = out(to, size),
+                                      .high_to = out(to, size)},
+                                     {size, way(), way(), way(), random.word()});
+}
+
+void grid_masks(RandomBatch& to, Random& random, std::uint32_t size) {
+    const Words first = beginnings(random, size, 9);
+    to.queue.add<kernels::GridMasks>(size,
+                                     {.low = to.in(naturals(random, first.back())),
+                                      .first = to.in(first),
+                                      .mask = out(to, 16 * std::size_t{size})},
+                                     {size});
+}
+
+// Of masks of any bits: what a cell's place is follows from them all the same.
+void grid_find(RandomBatch& to, Random& random, std::uint32_t size) {
+    constexpr std::int32_t reach = 1 << 5;
+    std::vector<std::uint64_t> leaf(random.below(300));
+    for (auto& key : leaf) {
+        const auto at = [&] { return 8 * (static_cast<std::int32_t>(random.below(8)) - 4); };
+        key = primitives::grid_key(at(), at(), at());
+    }
+    std::ranges::sort(leaf);
+    leaf.erase(std::ranges::unique(leaf).begin(), leaf.end());
+    Words low, high;
+    for (const std::uint64_t key : leaf) {
+        low.push_back(static_cast<std::uint32_t>(key));
+        high.push_back(static_cast<std::uint32_t>(key >> 32));
+    }
+    const auto axis = [&] { return to.in(integers(random, size, -reach, reach)); };
+    to.queue.add<kernels::GridFind>(
+        size,
+        {.i = axis(),
+         .j = axis(),
+         .k = axis(),
+         .grid = {to.in(low), to.in(high), to.in(naturals(random, leaf.size())),
+                  to.in(naturals(random, 16 * leaf.size()))},
+         .place = out(to, size)},
+        {size, static_cast<std::uint32_t>(leaf.size())});
+}
+
+void grid_packing(RandomBatch& to, Random& random, std::uint32_t size) {
+    const auto low = keys(to, random, size), high = keys(to, random, size);
+    const std::uint32_t groups = (size + 1023) / 1024;
+    to.queue.add<kernels::GridBounds>(
+        groups, {.low = low, .high = high, .dst = out(to, 6 * std::size_t{groups})},
+        {size, groups});
+    const auto packed = out(to, size);
+    const kernels::GridPackParams params{.count = size,
+                                         .x = random.word(),
+                                         .y = random.word(),
+                                         .z = random.word(),
+                                         .bits_y = random.below(19),
+                                         .bits_z = random.below(19),
+                                         .none = random.word()};
+    to.queue.add<kernels::GridPack>(size, {.low = low, .high = high, .packed = packed}, params);
+    to.queue.add<kernels::GridUnpack>(
+        size, {.packed = packed, .low = out(to, size), .high = out(to, size)}, params);
+}
+
+void search(RandomBatch& to, Random& random, std::uint32_t size) {
+    const auto list = [&](std::uint32_t count) {
+        std::vector<std::uint64_t> all;
+        for (const std::uint32_t low : naturals(random, count, 5000))
+            all.push_back(std::uint64_t{random.below(3)} << 32 | low);
+        return all;
+    };
+    std::vector<std::uint64_t> sorted = list(random.below(5000));
+    std::ranges::sort(sorted);
+    sorted.erase(std::ranges::unique(sorted).begin(), sorted.end());
+    const auto word = [&](const std::vector<std::uint64_t>& all, unsigned shift) {
+        Words words;
+        for (const std::uint64_t key : all)
+            words.push_back(static_cast<std::uint32_t>(key >> shift));
+        return to.in(words);
+    };
+    const std::vector<std::uint64_t> wanted = list(size);
+    primitives::search(to.queue, word(sorted, 0), word(sorted, 32), word(wanted, 0),
+                       word(wanted, 32), out(to, size));
+}
+
 }  // namespace random_primitive
 
 std::span<const RandomCase> random_primitives() {
@@ -137,6 +240,12 @@ std::span<const RandomCase> random_primitives() {
         {"add_by_key", 5000, add_by_key},
         {"histogram", 5000, histogram},
         {"components", 5000, components},
+        {"grid_keys", 5000, grid_keys},
+        {"grid_shift", 5000, grid_shift},
+        {"grid_masks", 1000, grid_masks},
+        {"grid_find", 5000, grid_find},
+        {"grid_packing", 5000, grid_packing},
+        {"search_keys", 5000, search},
     };
     return cases;
 }

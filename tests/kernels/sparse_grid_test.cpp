@@ -127,21 +127,26 @@ TEST_P(SparseGrids, FindTheirCells) {
         for (auto& axis : points) axis.push_back(random.uniform(-1, 1));
     const SparseGrid grid = of(points, 0.125F);
     const std::vector<std::uint64_t> all = keys(grid.cell_low, grid.cell_high);
-    Words low, high, wanted;
+    std::array<std::vector<std::int32_t>, 3> cells;
+    Words wanted;
+    const std::vector<std::int32_t> ends{INT32_MIN, INT32_MAX, -(1 << 20), 1 << 20, (1 << 20) - 1};
     for (std::size_t n = 0; n < 4099; ++n) {
-        const auto at = [&] { return static_cast<std::int32_t>(random.below(40)) - 20; };
-        const std::uint64_t key = n < 3 ? ~0ULL >> n : grid_key(at(), at(), at());
-        low.push_back(oracle::low_word(key));
-        high.push_back(oracle::low_word(key >> 32));
-        const auto found = std::lower_bound(all.begin(), all.end(), key);
-        wanted.push_back(found == all.end() || *found != key
-                             ? none
-                             : static_cast<std::uint32_t>(found - all.begin()));
+        for (auto& axis : cells)
+            axis.push_back(n < 20 ? ends[random.below(ends.size())]
+                                  : static_cast<std::int32_t>(random.below(40)) - 20);
+        const auto at = [&](std::size_t a) { return cells[a].back(); };
+        const auto found =
+            std::ranges::lower_bound(all, n < 20 ? 0 : grid_key(at(0), at(1), at(2)));
+        const bool has = n >= 20 && found != all.end() && *found == grid_key(at(0), at(1), at(2));
+        wanted.push_back(has ? static_cast<std::uint32_t>(found - all.begin()) : none);
     }
-    const device::Buffer<std::uint32_t> low_of(*device, low, "low"), high_of(*device, high, "high");
-    const Guarded<std::uint32_t> place(*device, low.size(), "place");
+    const auto upload = [&](std::size_t a) {
+        return device::Buffer<std::int32_t>(*device, cells[a], "cells");
+    };
+    const auto i = upload(0), j = upload(1), k = upload(2);
+    const Guarded<std::uint32_t> place(*device, wanted.size(), "place");
     device::Queue queue(*device);
-    grid.find(queue, low_of, high_of, place.slice());
+    grid.find(queue, i, j, k, place.slice());
     queue.run();
     EXPECT_TRUE(same(place.download(), wanted));
     EXPECT_TRUE(place.untouched());

@@ -65,4 +65,33 @@ inline std::vector<std::uint32_t> gather(const std::vector<std::uint32_t>& table
     return sums;
 }
 
+// What 16 bits of IEEE 754 mean: a sign, 5 bits of exponent, 10 of the fraction.
+inline float of_half_bits(std::uint32_t bits) {
+    const std::uint32_t exponent = bits >> 10 & 31, fraction = bits & 1023;
+    const float sign = (bits & 0x8000) != 0 ? -1.0F : 1.0F;
+    if (exponent == 31) {
+        if (fraction == 0) return sign * std::numeric_limits<float>::infinity();
+        return std::bit_cast<float>((bits & 0x8000) << 16 | 0x7f800000u | fraction << 13);
+    }
+    const int power = exponent == 0 ? -24 : static_cast<int>(exponent) - 25;
+    return sign * std::ldexp(static_cast<float>(exponent == 0 ? fraction : fraction + 1024), power);
+}
+// Those of the nearest one, of two the even one: found among all of them.
+inline std::uint32_t half_bits(float value) {
+    static const std::vector<double> all = [] {
+        std::vector<double> values;
+        for (std::uint32_t n = 0; n < 0x7c00; ++n) values.push_back(of_half_bits(n));
+        values.push_back(65536);  // in whose place infinity stands
+        return values;
+    }();
+    const std::uint32_t sign = std::signbit(value) ? 0x8000 : 0;
+    const double magnitude = std::fabs(double{value});
+    const auto above = static_cast<std::uint32_t>(
+        std::lower_bound(all.begin(), all.end() - 1, magnitude) - all.begin());
+    if (above == 0 || magnitude >= all.back()) return sign | above;
+    const double over = all[above] - magnitude, under = magnitude - all[above - 1];
+    const bool down = under < over || (under == over && above % 2 == 1);
+    return sign | (down ? above - 1 : above);
+}
+
 }  // namespace topple::oracle

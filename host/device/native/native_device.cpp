@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,22 +24,31 @@ namespace topple::device {
 namespace {
 
 constexpr std::size_t alignment = 64;  // a cache line, and the widest vector register
+// Of large buffers, which the system then fills by whole pages of this size, 512 times as few.
+constexpr std::size_t huge_page = std::size_t{2} << 20, least_huge = 2 * huge_page;
 
 class NativeMemory final : public Memory {
   public:
     NativeMemory(const Device& device, std::uint64_t bytes, const std::string& name)
         : Memory(device, bytes, name) {
-        const std::uint64_t padded =
-            (std::max<std::uint64_t>(bytes, 1) + alignment - 1) / alignment * alignment;
-        data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
+        const std::uint64_t unit = bytes < least_huge ? alignment : huge_page;
+        const std::uint64_t padded = (std::max<std::uint64_t>(bytes, 1) + unit - 1) / unit * unit;
+        data_ = static_cast<std::byte*>(std::aligned_alloc(unit, padded));
         if (!data_) {
             // Not of the kind device: that can be used, but the scan is too large for it.
             throw OutOfMemory(ErrorKind::input, "buffer " + name + ": the system has no " +
                                                     std::to_string(bytes) + " bytes left");
         }
+#ifdef MADV_HUGEPAGE
+        if (unit == huge_page) madvise(data_, padded, MADV_HUGEPAGE);  // or not, as it likes
+#endif
     }
-    ~NativeMemory() override { std::free(data_); }
-    std::byte* host_address() override { return data_; }
+    ~NativeMemory() override {
+        std::free(data_);
+    }
+    std::byte* host_address() override {
+        return data_;
+    }
 
   private:
     std::byte* data_;

@@ -211,7 +211,7 @@ def load(path, *, params=None, functions=None, name=None, sizes=None):
         kernel = _tool.Kernel(kernels[name] if name else _tool.Source(path), name)
         header = _header(path, kernel.params_type) if params is None else _beside(path, params)
         fields = _tool.params_fields(header, kernel.params_type)
-        common = _tool.shared_text(header, None if functions is None else _beside(path, functions))
+        common = _tool.shared_text(header, _tool.shared_functions(kernel, None if functions is None else _beside(path, functions)))
     except _tool.Refused as refused:
         raise error('input', str(refused)) from None
     except (OSError, UnicodeDecodeError) as problem:

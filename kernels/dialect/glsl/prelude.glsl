@@ -128,6 +128,13 @@ float topple_sqrt(const float v) {
 
 #define float_bits(v) floatBitsToUint(v)
 #define bits_float(v) uintBitsToFloat(v)
+#define bit_count(v) uint(bitCount(v))
+uint mul_high(uint a, uint b) {
+    uint high;
+    uint low;
+    umulExtended(a, b, high, low);
+    return high;
+}
 
 // GLSL leaves open which of two zeros min and max give; the dialect takes the first.
 float topple_min(float a, float b) { return b < a ? b : a; }

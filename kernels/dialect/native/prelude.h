@@ -210,4 +210,6 @@ FN float abs(float v) { return __builtin_fabsf(v); }
 FN int abs(int v) { return v < 0 ? -v : v; }
 FN uint float_bits(float v) { return __builtin_bit_cast(uint, v); }
 FN float bits_float(uint v) { return __builtin_bit_cast(float, v); }
+FN uint mul_high(uint a, uint b) { return static_cast<uint>((std::uint64_t{a} * b) >> 32); }
+FN uint bit_count(uint v) { return static_cast<uint>(__builtin_popcount(v)); }
 }  // namespace DIALECT_NAMESPACE

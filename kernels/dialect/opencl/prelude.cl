@@ -45,6 +45,8 @@
 
 #define float_bits(v) as_uint(v)
 #define bits_float(v) as_float(v)
+#define bit_count(v) popcount(v)
+#define mul_high(a, b) mul_hi(a, b)
 
 // GLSL's constructor casts. Function-like, so that plain type names stay types.
 #define float(x) ((float)(x))

@@ -12,7 +12,7 @@ void walk(const graph::CutProblem& problem, graph::EnergyCache& cache, topple::R
     graph::CutChain chain(problem, cache, random);
     while (!chain.begin()) cache.evaluate(chain.wanted());
     for (unsigned step = 0; step < steps; ++step) {
-        while (!chain.step(temperature)) cache.evaluate(chain.wanted());
+        while (!chain.step([&](unsigned) { return temperature; })) cache.evaluate(chain.wanted());
         see(chain);
     }
 }

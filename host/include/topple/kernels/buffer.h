@@ -111,4 +111,9 @@ struct Argument {
     Argument(const Buffer<T>& buffer) : range(static_cast<Slice<T>>(buffer).range) {}
 };
 
+// A sparse grid (primitives/sparse_grid.h), which a kernel takes by GRID_IN.
+struct GridArgument {
+    Argument<std::uint32_t> leaf_low, leaf_high, first, mask;
+};
+
 }  // namespace topple::device

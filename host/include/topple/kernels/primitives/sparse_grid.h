@@ -29,9 +29,12 @@ struct SparseGrid {
     // With all cells that share a side with one of its own. Waits.
     SparseGrid dilated() const;
 
-    // place[i]: the cell of key i, or none.
-    void find(device::Queue& queue, const Words& low_of, const Words& high_of,
-              const Words& place) const;
+    // place[n]: the cell (i[n], j[n], k[n]), by its place in the order of the cells, or none.
+    using Coordinates = device::Slice<std::int32_t>;
+    void find(device::Queue& queue, const Coordinates& i, const Coordinates& j,
+              const Coordinates& k, const Words& place) const;
+    // What a kernel takes by GRID_IN, to look up cells by GRID_FIND (docs/dialect.md).
+    operator device::GridArgument() const { return {leaf_low, leaf_high, first, mask}; }
     // leaf[i]: the leaf that lies beside leaf i, (di, dj, dk) leaves away, or none.
     void neighbours(device::Queue& queue, Scratch& scratch, std::int32_t di, std::int32_t dj,
                     std::int32_t dk, const Words& leaf) const;
