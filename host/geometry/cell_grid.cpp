@@ -13,15 +13,22 @@ constexpr std::uint64_t grid_chunk = 1 << 13;  // cells handed to a thread at on
 
 }  // namespace
 
-KeyGroups group_keys(std::span<const std::uint64_t> keys) {
-    KeyGroups groups{sorted_order(keys), {}};
+KeyGroups group_keys(std::span<const std::uint64_t> keys, ThreadPool& threads) {
+    KeyGroups groups{sorted_order(keys, threads), {}};
     const auto& order = groups.order;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        if (k == 0 || keys[order[k]] != keys[order[k - 1]])
-            groups.first.push_back(static_cast<std::uint32_t>(k));
-    }
+    std::vector<std::uint8_t> begins(order.size());
+    threads.each(order.size(), grid_chunk, [&](std::size_t k) {
+        begins[k] = k == 0 || keys[order[k]] != keys[order[k - 1]];
+    });
+    for (std::size_t k = 0; k < order.size(); ++k)
+        if (begins[k] != 0) groups.first.push_back(static_cast<std::uint32_t>(k));
     groups.first.push_back(static_cast<std::uint32_t>(order.size()));
     return groups;
+}
+
+KeyGroups group_keys(std::span<const std::uint64_t> keys) {
+    ThreadPool alone(1);
+    return group_keys(keys, alone);
 }
 
 CellPacking::CellPacking(const GridCell& lowest, const GridCell& highest, int reach) {

@@ -23,6 +23,7 @@ struct KeyGroups {
         return std::span(order).subspan(first[g], first[g + 1] - first[g]);
     }
 };
+KeyGroups group_keys(std::span<const std::uint64_t> keys, ThreadPool& threads);
 KeyGroups group_keys(std::span<const std::uint64_t> keys);
 
 inline constexpr std::int64_t max_cells_per_axis = (std::int64_t{1} << 21) - 8;
@@ -70,7 +71,7 @@ KeyGroups group_cells(std::size_t count, const CellOf& cell_of, ThreadPool& thre
     const CellPacking pack = CellPacking::of(count, cell_of);
     std::vector<std::uint64_t> keys(count);
     threads.each(count, chunk, [&](std::size_t i) { keys[i] = pack(cell_of(i)); });
-    return group_keys(keys);
+    return group_keys(keys, threads);
 }
 
 // Mean and covariance (xx yy zz xy xz yz) of points in a cell, in cells, from its centre.

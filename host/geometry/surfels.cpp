@@ -88,7 +88,7 @@ CellGrid bin(const CloudView& cloud, double cell_m, ThreadPool& threads,
     threads.each(n, surfel_chunk, [&](std::size_t i) {
         keys[i] = pack(index(cloud.x[i]), index(cloud.y[i]), index(cloud.z[i]));
     });
-    const KeyGroups cells = group_keys(keys);
+    const KeyGroups cells = group_keys(keys, threads);
     grid.resize(cells.size());
     count.assign(cells.size(), 0);
     threads.each(cells.size(), surfel_chunk, [&](std::size_t cell) {

@@ -80,7 +80,7 @@ void part_sides(const CloudView& cloud, const SensorSides& sides, ThreadPool& th
         points.push_back(static_cast<std::uint32_t>(i));
         keys.push_back(2 * std::uint64_t{of_point[i]} + behind[i]);
     }
-    KeyGroups groups = group_keys(keys);
+    KeyGroups groups = group_keys(keys, threads);
     for (std::uint32_t& n : groups.order) n = points[n];
     const Axes axes{cloud.x, cloud.y, cloud.z};
     std::vector<std::uint8_t> is_wall(groups.size() / 2);

@@ -2,6 +2,9 @@
 #include "graph/known_links.h"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "core/union_find.h"
@@ -14,7 +17,69 @@ void make_sorted_set(std::vector<std::int32_t>& values) {
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+// Of each primitive whether links speak of it; see with_others_kept().
+Table<PrimitiveId, bool> spoken_of(const KnownLinks& links,
+                                   const Table<PrimitiveId, std::int32_t>& group,
+                                   std::span<const Joint> joints,
+                                   const Table<PrimitiveId, bool>& pinned) {
+    std::set<std::int32_t> groups;
+    std::vector<PrimitiveId> open;  // of the ground's
+    Table<PrimitiveId, bool> out(group.size(), false);
+    const auto open_up = [&](PrimitiveId p) {
+        if (group[p] >= 0 || pinned[p] || out[p]) return;
+        out[p] = true;
+        open.push_back(p);
+    };
+    for (const auto* pairs : {&links.together, &links.apart}) {
+        for (const auto& [a, b] : *pairs) {
+            for (const PrimitiveId p : {a, b}) {
+                if (group[p] >= 0) groups.insert(group[p]);
+                open_up(p);
+            }
+        }
+    }
+    for (std::size_t p = 0; p < group.size(); ++p)
+        if (groups.contains(group[p])) out[p] = true;
+    Table<PrimitiveId, std::vector<PrimitiveId>> likely(group.size());
+    for (const Joint& j : joints) {
+        if (j.log_odds <= 0) continue;
+        likely[j.a].push_back(j.b);
+        likely[j.b].push_back(j.a);
+    }
+    while (!open.empty()) {
+        const PrimitiveId p = open.back();
+        open.pop_back();
+        for (const PrimitiveId other : likely[p]) open_up(other);
+    }
+    return out;
+}
+
 }  // namespace
+
+KeptGrouping::KeptGrouping(KnownLinks known, const Table<PrimitiveId, std::int32_t>& group,
+                           std::span<const Joint> joints, const Table<PrimitiveId, bool>& pinned)
+    : links_(std::move(known)), group_(group), open_(spoken_of(links_, group, joints, pinned)) {
+    std::map<std::int32_t, std::int32_t> first;  // primitive of each group that stays
+    for (std::size_t p = 0; p < group.size(); ++p) {
+        if (open_[p]) continue;
+        const auto primitive = static_cast<std::int32_t>(p);
+        const auto [at, fresh] = first.try_emplace(group[p], primitive);
+        if (!fresh) links_.together.emplace_back(at->second, primitive);
+    }
+    // Whatever the odds that it is the room's.
+    if (const auto ground = first.find(-1); ground != first.end())
+        for (const auto& [g, primitive] : first)
+            if (g >= 0) links_.apart.emplace_back(ground->second, primitive);
+}
+
+std::vector<Joint> KeptGrouping::of_open(std::span<const Joint> joints) const {
+    const auto may_change = [this](PrimitiveId p) { return open_[p] || group_[p] < 0; };
+    std::vector<Joint> out;
+    std::ranges::copy_if(joints, std::back_inserter(out), [&](const Joint& j) {
+        return (open_[j.a] || open_[j.b]) && may_change(j.a) && may_change(j.b);
+    });
+    return out;
+}
 
 LinkedNodes::LinkedNodes(std::int32_t primitives, const KnownLinks& links) {
     const auto count = static_cast<std::size_t>(primitives);

@@ -17,6 +17,27 @@ namespace topple::graph {
 // Pairs of primitives that are one object, whether they touch or not, and pairs that are none.
 struct KnownLinks {
     std::vector<std::pair<std::int32_t, std::int32_t>> together, apart;
+    bool none() const { return together.empty() && apart.empty(); }
+};
+
+// A grouping that links change where they speak of it, and nowhere else: of the groups that they
+// name a primitive of, and of the ground's of those that they name, and what likely is one with
+// such. These group anew among themselves and with the ground; all others keep their groups.
+class KeptGrouping {
+  public:
+    // group: without the links, -1 for the ground's. Keeps a reference to it.
+    KeptGrouping(KnownLinks links, const Table<PrimitiveId, std::int32_t>& group,
+                 std::span<const Joint> joints, const Table<PrimitiveId, bool>& pinned);
+
+    // With what stays as it is.
+    const KnownLinks& links() const { return links_; }
+    // The joints by which something may change.
+    std::vector<Joint> of_open(std::span<const Joint> joints) const;
+
+  private:
+    KnownLinks links_;
+    const Table<PrimitiveId, std::int32_t>& group_;
+    Table<PrimitiveId, bool> open_;
 };
 
 // The primitives as nodes of a graph in which all that are one object for sure are one node: what

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "fitted/boosted_trees.h"
@@ -23,6 +26,42 @@ std::vector<Edge> edges_of(std::span<const Joint> joints) {
     for (const Joint& j : joints)
         edges.push_back({j.a, j.b, std::clamp(fitted::probability(j.log_odds), 0.02, 0.98)});
     return edges;
+}
+
+// Each group has the number of the one that most of its primitives were in, if no other has more of
+// that one's; the others follow. Numbers that are left over go to the last ones.
+void keep_numbers(const Table<PrimitiveId, std::int32_t>& before,
+                  Table<PrimitiveId, std::int32_t>& group) {
+    std::map<std::pair<std::int32_t, std::int32_t>, int> common;  // of number before and group
+    std::set<std::int32_t> groups;
+    for (std::size_t p = 0; p < group.size(); ++p) {
+        if (group[p] < 0) continue;
+        groups.insert(group[p]);
+        if (before[p] >= 0) ++common[{before[p], group[p]}];
+    }
+    std::vector<std::tuple<int, std::int32_t, std::int32_t>> offers;  // the largest first
+    for (const auto& [pair, count] : common) offers.emplace_back(-count, pair.first, pair.second);
+    std::ranges::sort(offers);
+    std::map<std::int32_t, std::int32_t> number_of, group_of;
+    const auto give = [&](std::int32_t number, std::int32_t of) {
+        number_of[of] = number;
+        group_of[number] = of;
+    };
+    for (const auto& [count, number, of] : offers)
+        if (!number_of.contains(of) && !group_of.contains(number)) give(number, of);
+    std::int32_t next = group_of.empty() ? 0 : group_of.rbegin()->first + 1;
+    for (const std::int32_t of : groups)
+        if (!number_of.contains(of)) give(next++, of);
+    const auto count = static_cast<std::int32_t>(groups.size());
+    for (std::int32_t number = 0; number < count; ++number) {
+        if (group_of.contains(number)) continue;
+        const auto last = std::prev(group_of.end());
+        const std::int32_t of = last->second;
+        group_of.erase(last);
+        give(number, of);
+    }
+    for (std::int32_t& g : group)
+        if (g >= 0) g = number_of[g];
 }
 
 }  // namespace
@@ -72,9 +111,16 @@ Grouping group_primitives(device::Device& device, const ContactGraph& graph,
     const std::vector<Joint> biased = biased_joints(joints, options.joint_bias);
     GroupEnergy energy(device, graph, bodies, biased, shell, options.standing_weight,
                        options.stability_level);
+    std::optional<KeptGrouping> kept;
+    if (!options.before.empty())
+        kept.emplace(options.links, options.before, biased, shell.pinned);
     // What is one object for sure is one node.
-    const LinkedNodes nodes(graph.primitives, options.links);
-    const std::vector<Joint> joints_of_nodes = nodes.joints(biased);
+    const LinkedNodes nodes(graph.primitives, kept ? kept->links() : options.links);
+    const auto joints_by = [&](double bias) {
+        const std::vector<Joint> all = biased_joints(joints, bias);
+        return nodes.joints(kept ? kept->of_open(all) : all);
+    };
+    const std::vector<Joint> joints_of_nodes = joints_by(options.joint_bias);
     const std::vector<bool> pinned = nodes.pinned(shell.pinned);
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
@@ -84,7 +130,7 @@ Grouping group_primitives(device::Device& device, const ContactGraph& graph,
     // Independent starts, by the joints with more and less of a bias.
     for (const double doubt : {0.0, 1.0, -1.0})
         sampler.starts.push_back(contract_greedily(
-            nodes.size(), nodes.joints(biased_joints(joints, options.joint_bias - doubt)), pinned,
+            nodes.size(), joints_by(options.joint_bias - doubt), pinned,
             nodes.sums(shell.log_odds), sampler.apart));
     sampler.starts.emplace_back();  // each node on its own
     // The first is near the best: what is left is to weigh how things stand, and to look whether a
@@ -92,13 +138,14 @@ Grouping group_primitives(device::Device& device, const ContactGraph& graph,
     sampler.first_temperature = 0.5;
     sampler.last_temperature = 0.02;
     sampler.anneal_steps =
-        static_cast<unsigned>(std::clamp<std::int64_t>(5 * graph.primitives, 1000, 50'000));
+        static_cast<unsigned>(std::clamp<std::int64_t>(5 * nodes.size(), 1000, 50'000));
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;
     Partition partition = swendsen_wang_cuts(nodes.size(), edges_of(joints_of_nodes), pinned,
                                              nodes.energies(energy.callbacks()), sampler);
     Grouping out;
     out.group = nodes.of_primitives(partition.label);
+    if (kept) keep_numbers(options.before, out.group);
     out.energy_curve = std::move(partition.best_energy_curve);
     return out;
 }

@@ -31,6 +31,9 @@ struct GroupingOptions {
     double time_limit_s = 0;     // see SwendsenWangOptions
     std::function<bool()> cancelled;
     KnownLinks links;
+    // Groups as found without the links: what these do not speak of keeps its group, and groups
+    // keep their numbers as far as may be. Empty: nothing was.
+    Table<PrimitiveId, std::int32_t> before;
 };
 
 struct Grouping {

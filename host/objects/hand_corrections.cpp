@@ -40,10 +40,13 @@ std::set<std::size_t> way_between(const graph::KnownLinks& links,
 }
 
 // Groups numbered by first appearance again, where some are gone or of the room now.
+// Without gaps, in the order in which they were.
 void renumber_groups(graph::Grouping& grouping) {
     std::map<std::int32_t, std::int32_t> number{{-1, -1}};
-    for (std::int32_t& g : grouping.group)
-        g = number.try_emplace(g, static_cast<std::int32_t>(number.size()) - 1).first->second;
+    for (const std::int32_t g : grouping.group) number[g] = 0;
+    std::int32_t next = -1;
+    for (auto& [before, now] : number) now = next++;
+    for (std::int32_t& g : grouping.group) g = number[g];
 }
 
 }  // namespace

@@ -302,10 +302,17 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         grouping.stability_level = options.stability_level;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        grouping.links = hand.links();
-        hand.keep_apart(*solid.solids, parts.shell);
-        out.grouping = graph::group_primitives(device, parts.contacts, parts.bodies, parts.joints,
-                                               parts.shell, grouping);
+        const auto group = [&] {
+            return graph::group_primitives(device, parts.contacts, parts.bodies, parts.joints,
+                                           parts.shell, grouping);
+        };
+        out.grouping = group();
+        if (!hand.links().none()) {
+            grouping.links = hand.links();
+            grouping.before = std::move(out.grouping.group);
+            hand.keep_apart(*solid.solids, parts.shell);
+            out.grouping = group();
+        }
         out.taken = hand.take_from(solid, out.grouping, parts.shell, parts.joints);
         hand.fix(solid, out.grouping, parts.shell);
         number_objects(out);

@@ -92,13 +92,13 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     out.by_sensors = true;
     // Before anything is made of them.
     check_camera_steps(places_of(poses), source);
-    const double depth_m =
-        typical_depth(k, out.frames->size(), [&](std::size_t f) { return out.frames->load(f); });
+    const double depth_m = typical_depth(*out.frames, device.threads());
     check_readings(k, out.frames->size(), depth_m, source, out.origin);
     out.cell_m = cell_for_frames(k, depth_m);
     if (!poses.empty()) {  // the sensor is the origin of a single image
         out.origin_m =
-            origin_amid_voxels(densest_planes(*out.frames), voxel_for_input(out, options));
+            origin_amid_voxels(densest_planes(*out.frames, device.threads()),
+                               voxel_for_input(out, options));
         out.frames = std::make_unique<ReckonedFrames>(std::move(out.frames), out.origin_m);
     }
     LimitedFusion fusion(out, depth_m, source, options, device.threads().threads());
@@ -114,7 +114,7 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
         comparison.add(frame, f);
         tell(added_share * static_cast<double>(f + 1) / count);
     };
-    for_each_frame(*out.frames, device.threads(), add, true);
+    for_each_frame(*out.frames, device.threads(), add, {.coloured = true});
     note_principal_point(k, out.origin, out.doubts);
     // First, and at once: the shards that such poses give take long.
     if (const std::string note = pose_note(comparison, poses.size(), out.origin); !note.empty()) {
@@ -160,16 +160,14 @@ Observation fused(device::Device& device, Frames given, ScanOrigin origin,
 
 }  // namespace
 
-double typical_depth(const Intrinsics& k, std::size_t count,
-                     const std::function<DepthFrame(std::size_t)>& load) {
+double typical_depth(const FrameStream& frames, ThreadPool& threads) {
     std::vector<double> depths;
-    const std::size_t step = std::max<std::size_t>(1, count / 8);
-    for (std::size_t f = 0; f < count; f += step) {
-        const DepthFrame frame = load(f);
-        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
-            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
-        }
-    }
+    const double scale = frames.intrinsics().depth_scale;
+    const auto add = [&](const DepthFrame& frame, std::size_t) {
+        for (std::size_t i = 0; i < frame.depth.size(); i += 37)
+            if (frame.depth[i]) depths.push_back(frame.depth[i] / scale);
+    };
+    for_each_frame(frames, threads, add, {.step = std::max<std::size_t>(1, frames.size() / 8)});
     return upper_median(depths);
 }
 
@@ -180,37 +178,40 @@ double cell_for_frames(const Intrinsics& k, double typical_depth_m) {
 }
 
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin) {
-    const Intrinsics& k = frames.intrinsics();
-    return depth_scale_hint(
-        frames.size(), k.depth_scale,
-        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); }), origin);
+    ThreadPool alone(1);
+    return depth_scale_hint(frames.size(), frames.intrinsics().depth_scale,
+                            typical_depth(frames, alone), origin);
 }
 
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,
-                    const std::function<void(DepthFrame, std::size_t)>& use, bool coloured) {
+                    const std::function<void(DepthFrame, std::size_t)>& use,
+                    const WhichFrames& which) {
     const auto load = [&](std::size_t i) {
-        return coloured ? frames.load_coloured(i) : frames.load(i);
+        return which.coloured ? frames.load_coloured(i) : frames.load(i);
     };
     if (frames.one_by_one()) {
-        for (std::size_t i = 0; i < frames.size(); ++i) use(load(i), i);
+        for (std::size_t i = 0; i < frames.size(); i += which.step) use(load(i), i);
         return;
     }
     struct Decoded {
+        std::size_t number;
         DepthFrame frame;
         std::exception_ptr error;
     };
-    for (std::size_t first = 0; first < frames.size(); first += threads.threads()) {
-        std::vector<Decoded> batch(std::min<std::size_t>(threads.threads(), frames.size() - first));
+    for (std::size_t first = 0; first < frames.size();) {
+        std::vector<Decoded> batch;
+        for (; batch.size() < threads.threads() && first < frames.size(); first += which.step)
+            batch.push_back({first, {}, {}});
         threads.each(batch.size(), 1, [&](std::size_t i) {
             try {
-                batch[i].frame = load(first + i);
+                batch[i].frame = load(batch[i].number);
             } catch (...) {
                 batch[i].error = std::current_exception();
             }
         });
-        for (std::size_t i = 0; i < batch.size(); ++i) {
-            if (batch[i].error) std::rethrow_exception(batch[i].error);
-            use(std::move(batch[i].frame), first + i);
+        for (Decoded& decoded : batch) {
+            if (decoded.error) std::rethrow_exception(decoded.error);
+            use(std::move(decoded.frame), decoded.number);
         }
     }
 }

@@ -33,10 +33,15 @@ inline constexpr const char* no_colours_note =
 // Throws Error(usage) for the path of an input that is empty, of which messages could name nothing.
 void check_path(const std::filesystem::path& input);
 
-// Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once,
-// unless they must be loaded one by one.
+// Calls use(frame, i) for each frame, or every step-th one, in order. Frames are decoded by all
+// threads, as many at once, unless they must be loaded one by one.
+struct WhichFrames {
+    bool coloured = false;
+    std::size_t step = 1;
+};
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,
-                    const std::function<void(DepthFrame, std::size_t)>& use, bool coloured = false);
+                    const std::function<void(DepthFrame, std::size_t)>& use,
+                    const WhichFrames& which = {});
 
 // Surfels are larger than the cells of the cloud: a surface then has no holes at their resolution
 // even where it is sparsely seen, and each averages the noise of several points. Measured: part
@@ -81,8 +86,7 @@ struct Observation {
 // typical depth, but not below its noise there, which only smears points over more cells.
 double cell_for_frames(const Intrinsics& intrinsics, double typical_depth_m);
 // That depth: the median of readings of some frames, metres; 0 where there are none.
-double typical_depth(const Intrinsics& intrinsics, std::size_t frames,
-                     const std::function<DepthFrame(std::size_t)>& load);
+double typical_depth(const FrameStream& frames, ThreadPool& threads);
 
 // From then on the normals that the cloud brought count as not given.
 void leave_out_normals(Observation& input);

@@ -56,13 +56,11 @@ Vec3 densest_planes(const CloudView& cloud) {
     return out;
 }
 
-Vec3 densest_planes(const FrameStream& frames) {
+Vec3 densest_planes(const FrameStream& frames, ThreadPool& threads) {
     constexpr std::size_t some_frames = 32, pixel_step = 29;
     const Intrinsics& k = frames.intrinsics();
     std::vector<Vec3> seen;
-    const std::size_t step = std::max<std::size_t>(1, frames.size() / some_frames);
-    for (std::size_t f = 0; f < frames.size(); f += step) {
-        const DepthFrame frame = frames.load(f);
+    const auto add = [&](const DepthFrame& frame, std::size_t) {
         const Mat4& m = frame.camera_to_world;
         for (std::size_t i = 0; i < frame.depth.size(); i += pixel_step) {
             if (frame.depth[i] == 0) continue;
@@ -73,7 +71,9 @@ Vec3 densest_planes(const FrameStream& frames) {
             for (std::size_t a = 0; a < 3; ++a)
                 p[a] = m[4 * a] * x + m[4 * a + 1] * y + m[4 * a + 2] * z + m[4 * a + 3];
         }
-    }
+    };
+    for_each_frame(frames, threads, add,
+                   {.step = std::max<std::size_t>(1, frames.size() / some_frames)});
     Vec3 out{};
     if (seen.empty()) return out;
     for (std::size_t a = 0; a < 3; ++a)

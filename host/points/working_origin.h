@@ -17,7 +17,7 @@ namespace topple {
 // Moves with the cloud, whatever the order of its points.
 Vec3 densest_planes(const CloudView& cloud);
 // The same of frames: from some readings of some of them.
-Vec3 densest_planes(const FrameStream& frames);
+Vec3 densest_planes(const FrameStream& frames, ThreadPool& threads);
 
 // Reckons the cloud's coordinates and its sensors' from `origin`, in the input's frame, instead of
 // from where they were reckoned from before. Frames and what else comes of the cloud must not be

@@ -273,8 +273,8 @@ Looked look_at_frames(const std::filesystem::path& input, const ParseOptions& op
     const Intrinsics& k = frames.intrinsics();
     out.frames = frames.size();
     out.pixels = out.frames * k.width * k.height;
-    const double depth_m =
-        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
+    ThreadPool threads(0);
+    const double depth_m = typical_depth(frames, threads);
     check_readings(k, frames.size(), depth_m, input.string(), ScanOrigin::frames_folder);
     out.cell_m = cell_for_frames(k, depth_m);
     out.spacing_m = out.cell_m;

@@ -213,6 +213,33 @@ TEST(KnownLinks, MakeOneNodeOfWhatIsOne) {
     EXPECT_EQ(nodes.one_object(1, 2), std::nullopt);
 }
 
+// Groups {1, 2}, {3, 4}, {5}, and of the ground 0, pinned, 6, which likely is one with 7, and 8.
+TEST(KnownLinks, KeepWhatTheyDoNotSpeakOf) {
+    const std::vector<std::int32_t> group{-1, 0, 0, 1, 1, 2, -1, -1, -1};
+    const std::vector<Joint> joints{{0, 6, 3}, {0, 7, 3}, {2, 4, -1}, {4, 5, 1}, {6, 7, 1},
+                                    {6, 8, -1}};
+    std::vector<bool> pinned(9);
+    pinned[0] = true;
+    const KnownLinks cut{{}, {{3, 4}}};
+    const auto open = KeptGrouping(cut, group, joints, pinned).of_open(joints);
+    EXPECT_TRUE(open.empty());  // neither joins 2 or 5
+    const auto nodes = [&](const KnownLinks& links) {
+        return LinkedNodes(9, KeptGrouping(links, group, joints, pinned).links());
+    };
+    const LinkedNodes parted = nodes(cut);
+    EXPECT_THAT(parted.members(parted.node_of(0)), ElementsAre(0, 6, 7, 8));
+    EXPECT_EQ(parted.one_object(1, 2), true);
+    EXPECT_EQ(parted.one_object(3, 4), false);
+    EXPECT_EQ(parted.one_object(5, 8), false);
+    const LinkedNodes taken = nodes({{}, {{6, 0}}});
+    EXPECT_THAT(taken.members(taken.node_of(0)), ElementsAre(0, 8));
+    EXPECT_EQ(taken.one_object(6, 7), std::nullopt);
+    EXPECT_EQ(taken.one_object(3, 4), true);
+    const LinkedNodes joined = nodes({{{2, 5}}, {}});
+    EXPECT_THAT(joined.members(joined.node_of(2)), ElementsAre(2, 5));
+    EXPECT_EQ(joined.one_object(1, 2), std::nullopt);
+}
+
 // However likely they are to be one.
 TEST(GreedyContractionApart, HoldsThroughOthers) {
     const std::vector<Joint> joints{{0, 1, 5}, {1, 2, 4}, {0, 2, 6}, {2, 3, 1}};
@@ -292,6 +319,13 @@ TEST_P(KnownObjects, AreWhatIsKnownOfThem) {
         EXPECT_THAT(grouped({{{1, 3}}, {}}), ElementsAre(-1, 0, 0, 0));
         EXPECT_THAT(grouped({{{1, 3}}, {{2, 3}}}), ElementsAre(-1, 0, 1, 0));
         EXPECT_THAT(grouped({{{0, 3}}, {}}), ElementsAre(-1, 0, 0, -1));
+        // Others keep their numbers.
+        options.before = {-1, 0, 0, 1};
+        EXPECT_THAT(grouped({{}, {{2, 1}}}), ElementsAre(-1, 0, 2, 1));
+        EXPECT_THAT(grouped({{{1, 3}}, {}}), ElementsAre(-1, 0, 0, 0));
+        EXPECT_THAT(grouped({{{0, 1}}, {}}), ElementsAre(-1, -1, 0, 1));
+        options.before = {-1, -1, -1, 0};
+        EXPECT_THAT(grouped({{}, {{0, 1}}}), ElementsAre(-1, 1, 1, 0));
     }
     const auto certain = pair_probabilities(contacts, joints, shell, {{}, {{1, 2}}});
     const auto judged = pair_probabilities(contacts, joints, shell);
