@@ -47,9 +47,8 @@ std::vector<std::uint32_t> radix_order(std::span<const std::uint64_t> keys, std:
         for (std::size_t d = 0; d < digits; ++d)
             for (auto& of_part : start) before += std::exchange(of_part[d], before);
         threads.each(parts, 1, [&](std::size_t part) {
-            each_of(part, [&](std::size_t i) {
-                other[start[part][digit(items[i].key)]++] = items[i];
-            });
+            each_of(part,
+                    [&](std::size_t i) { other[start[part][digit(items[i].key)]++] = items[i]; });
         });
         items.swap(other);
     }

@@ -112,8 +112,7 @@ Grouping group_primitives(device::Device& device, const ContactGraph& graph,
     GroupEnergy energy(device, graph, bodies, biased, shell, options.standing_weight,
                        options.stability_level);
     std::optional<KeptGrouping> kept;
-    if (!options.before.empty())
-        kept.emplace(options.links, options.before, biased, shell.pinned);
+    if (!options.before.empty()) kept.emplace(options.links, options.before, biased, shell.pinned);
     // What is one object for sure is one node.
     const LinkedNodes nodes(graph.primitives, kept ? kept->links() : options.links);
     const auto joints_by = [&](double bias) {
@@ -129,9 +128,9 @@ Grouping group_primitives(device::Device& device, const ContactGraph& graph,
     sampler.apart = nodes.apart();
     // Independent starts, by the joints with more and less of a bias.
     for (const double doubt : {0.0, 1.0, -1.0})
-        sampler.starts.push_back(contract_greedily(
-            nodes.size(), joints_by(options.joint_bias - doubt), pinned,
-            nodes.sums(shell.log_odds), sampler.apart));
+        sampler.starts.push_back(contract_greedily(nodes.size(),
+                                                   joints_by(options.joint_bias - doubt), pinned,
+                                                   nodes.sums(shell.log_odds), sampler.apart));
     sampler.starts.emplace_back();  // each node on its own
     // The first is near the best: what is left is to weigh how things stand, and to look whether a
     // few parts are better elsewhere.

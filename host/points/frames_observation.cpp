@@ -96,9 +96,8 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     check_readings(k, out.frames->size(), depth_m, source, out.origin);
     out.cell_m = cell_for_frames(k, depth_m);
     if (!poses.empty()) {  // the sensor is the origin of a single image
-        out.origin_m =
-            origin_amid_voxels(densest_planes(*out.frames, device.threads()),
-                               voxel_for_input(out, options));
+        out.origin_m = origin_amid_voxels(densest_planes(*out.frames, device.threads()),
+                                          voxel_for_input(out, options));
         out.frames = std::make_unique<ReckonedFrames>(std::move(out.frames), out.origin_m);
     }
     LimitedFusion fusion(out, depth_m, source, options, device.threads().threads());

@@ -83,8 +83,8 @@ TEST(SparseGridOfOpenVdb, RefusesWhatIsTooFar) {
 TEST(SparseGridOfOpenVdb, GoesToNanoVdbFromThere) {
     const auto device = device::open_native(1);
     const openvdb::FloatTree tree = some_tree();
-    const auto mask =
-        openvdb::MaskGrid::create(primitives::tree_of_grid(primitives::grid_of_tree(*device, tree)));
+    const auto mask = openvdb::MaskGrid::create(
+        primitives::tree_of_grid(primitives::grid_of_tree(*device, tree)));
     const auto handle = nanovdb::openToNanoVDB(*mask);
     const auto* nano = handle.grid<nanovdb::ValueMask>();
     ASSERT_NE(nano, nullptr);

@@ -216,8 +216,8 @@ TEST(KnownLinks, MakeOneNodeOfWhatIsOne) {
 // Groups {1, 2}, {3, 4}, {5}, and of the ground 0, pinned, 6, which likely is one with 7, and 8.
 TEST(KnownLinks, KeepWhatTheyDoNotSpeakOf) {
     const std::vector<std::int32_t> group{-1, 0, 0, 1, 1, 2, -1, -1, -1};
-    const std::vector<Joint> joints{{0, 6, 3}, {0, 7, 3}, {2, 4, -1}, {4, 5, 1}, {6, 7, 1},
-                                    {6, 8, -1}};
+    const std::vector<Joint> joints{{0, 6, 3}, {0, 7, 3}, {2, 4, -1},
+                                    {4, 5, 1}, {6, 7, 1}, {6, 8, -1}};
     std::vector<bool> pinned(9);
     pinned[0] = true;
     const KnownLinks cut{{}, {{3, 4}}};
