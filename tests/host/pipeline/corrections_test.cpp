@@ -320,6 +320,15 @@ TEST_F(CorrectedScan, IsCutWhereTwoThingsWereOne) {
         EXPECT_NE(scene.points.object[nearest_point(scene, cloud, one)],
                   scene.points.object[nearest_point(scene, cloud, other)]);
         EXPECT_EQ(scene.corrections[0].objects.size(), 1u);
+        if (seed != plain.seed) continue;
+        // Nothing else is another thing than it was, nor has another number.
+        for (const Object& o : plain.objects) {
+            if (o.grounded || std::ranges::find(o.primitives, parts[0]) != o.primitives.end())
+                continue;
+            const Object& now = scene.objects.at(static_cast<std::size_t>(o.id));
+            EXPECT_EQ(now.primitives, o.primitives) << o.id;
+            EXPECT_EQ(now.barrier_J, o.barrier_J) << o.id;
+        }
     }
 }
 
