@@ -29,42 +29,46 @@ std::vector<Edge> edges_of(std::span<const Joint> joints) {
 }
 
 // Each group has the number of the one that most of its primitives were in, if no other has more of
-// that one's; the others follow. Numbers that are left over go to the last ones.
+// that one's; the others have new ones.
 void keep_numbers(const Table<PrimitiveId, std::int32_t>& before,
                   Table<PrimitiveId, std::int32_t>& group) {
     std::map<std::pair<std::int32_t, std::int32_t>, int> common;  // of number before and group
-    std::set<std::int32_t> groups;
+    std::int32_t next = 0;
     for (std::size_t p = 0; p < group.size(); ++p) {
-        if (group[p] < 0) continue;
-        groups.insert(group[p]);
-        if (before[p] >= 0) ++common[{before[p], group[p]}];
+        next = std::max(next, before[p] + 1);
+        if (group[p] >= 0 && before[p] >= 0) ++common[{before[p], group[p]}];
     }
     std::vector<std::tuple<int, std::int32_t, std::int32_t>> offers;  // the largest first
     for (const auto& [pair, count] : common) offers.emplace_back(-count, pair.first, pair.second);
     std::ranges::sort(offers);
-    std::map<std::int32_t, std::int32_t> number_of, group_of;
-    const auto give = [&](std::int32_t number, std::int32_t of) {
-        number_of[of] = number;
-        group_of[number] = of;
-    };
+    std::map<std::int32_t, std::int32_t> number_of{{-1, -1}};
+    std::set<std::int32_t> given;
     for (const auto& [count, number, of] : offers)
-        if (!number_of.contains(of) && !group_of.contains(number)) give(number, of);
-    std::int32_t next = group_of.empty() ? 0 : group_of.rbegin()->first + 1;
-    for (const std::int32_t of : groups)
-        if (!number_of.contains(of)) give(next++, of);
-    const auto count = static_cast<std::int32_t>(groups.size());
-    for (std::int32_t number = 0; number < count; ++number) {
-        if (group_of.contains(number)) continue;
-        const auto last = std::prev(group_of.end());
-        const std::int32_t of = last->second;
-        group_of.erase(last);
-        give(number, of);
+        if (!number_of.contains(of) && given.insert(number).second) number_of[of] = number;
+    for (std::int32_t& g : group) {
+        const auto [at, fresh] = number_of.try_emplace(g, next);
+        next += static_cast<std::int32_t>(fresh);
+        g = at->second;
     }
-    for (std::int32_t& g : group)
-        if (g >= 0) g = number_of[g];
+    close_gaps(group);
 }
 
 }  // namespace
+
+void close_gaps(Table<PrimitiveId, std::int32_t>& group) {
+    std::set<std::int32_t> numbers(group.begin(), group.end());
+    numbers.erase(-1);
+    std::map<std::int32_t, std::int32_t> instead;
+    for (std::int32_t n = 0; !numbers.empty() && n < *numbers.rbegin(); ++n) {
+        if (numbers.contains(n)) continue;
+        const std::int32_t last = *numbers.rbegin();
+        instead[last] = n;
+        numbers.erase(last);
+        numbers.insert(n);
+    }
+    for (std::int32_t& g : group)
+        if (const auto at = instead.find(g); at != instead.end()) g = at->second;
+}
 
 physics::Candidate candidate_of(const ContactGraph& graph,
                                 TableView<PrimitiveId, physics::MassProperties> bodies,

@@ -56,6 +56,9 @@ Grouping group_primitives(device::Device& device, const ContactGraph& graph,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options);
 
+// Groups are numbered from 0 on without gaps: a number that is none's goes to the last one.
+void close_gaps(Table<PrimitiveId, std::int32_t>& group);
+
 // That both are one solid, of each of the graph's pairs: as it is known, by their joint, or as
 // parts of the room. joints: sorted by (a, b); they may be those of another graph of the same
 // primitives.

@@ -39,16 +39,6 @@ std::set<std::size_t> way_between(const graph::KnownLinks& links,
     return out;
 }
 
-// Groups numbered by first appearance again, where some are gone or of the room now.
-// Without gaps, in the order in which they were.
-void renumber_groups(graph::Grouping& grouping) {
-    std::map<std::int32_t, std::int32_t> number{{-1, -1}};
-    for (const std::int32_t g : grouping.group) number[g] = 0;
-    std::int32_t next = -1;
-    for (auto& [before, now] : number) now = next++;
-    for (std::int32_t& g : grouping.group) g = number[g];
-}
-
 }  // namespace
 
 HandCorrections::HandCorrections(std::span<const Correction> corrections, const SolidParts& parts)
@@ -222,7 +212,7 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
     // Joints are found of these, and have been.
     parts.seams = {};
     grouping.group = left_of(out.number, grouping.group);
-    renumber_groups(grouping);
+    graph::close_gaps(grouping.group);
     shell.log_odds = left_of(out.number, shell.log_odds);
     shell.pinned = left_of(out.number, shell.pinned);
     for (graph::Joint& j : joints) {
@@ -272,7 +262,7 @@ void HandCorrections::fix(SolidParts& parts, graph::Grouping& grouping, graph::S
         shell.log_odds[p] = std::max(shell.log_odds[p], surely_log_odds);
         if (roles[p] == Role::none) roles[p] = Role::fixture;
     }
-    if (!fixed.empty()) renumber_groups(grouping);
+    if (!fixed.empty()) graph::close_gaps(grouping.group);
     for (std::size_t n = 0; n < links_.apart.size(); ++n) {
         const auto& [a, b] = links_.apart[n];
         if (grouping.group[a] < 0 && grouping.group[b] < 0 &&

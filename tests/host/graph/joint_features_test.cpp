@@ -240,6 +240,18 @@ TEST(KnownLinks, KeepWhatTheyDoNotSpeakOf) {
     EXPECT_EQ(joined.one_object(1, 2), std::nullopt);
 }
 
+TEST(KnownLinks, LeaveNoGapsInNumbers) {
+    const auto closed = [](std::vector<std::int32_t> group) {
+        Table<PrimitiveId, std::int32_t> out(group.begin(), group.end());
+        close_gaps(out);
+        return std::vector<std::int32_t>(out.begin(), out.end());
+    };
+    EXPECT_THAT(closed({-1, 0, 3, 1, 3, 5}), ElementsAre(-1, 0, 3, 1, 3, 2));
+    EXPECT_THAT(closed({4, 2, -1, 4}), ElementsAre(0, 1, -1, 0));
+    EXPECT_THAT(closed({-1, -1}), ElementsAre(-1, -1));
+    EXPECT_THAT(closed({}), ElementsAre());
+}
+
 // However likely they are to be one.
 TEST(GreedyContractionApart, HoldsThroughOthers) {
     const std::vector<Joint> joints{{0, 1, 5}, {1, 2, 4}, {0, 2, 6}, {2, 3, 1}};
