@@ -18,9 +18,9 @@
 #define GRID_FIND(at, grid, leaves, i, j, k)                                                            \
     uint at = GRID_NONE;                                                                                \
     {                                                                                                   \
-        uint x_ = uint((i) + GRID_BIAS);                                                                \
-        uint y_ = uint((j) + GRID_BIAS);                                                                \
-        uint z_ = uint((k) + GRID_BIAS);                                                                \
+        uint x_ = uint(i) + uint(GRID_BIAS);                                                            \
+        uint y_ = uint(j) + uint(GRID_BIAS);                                                            \
+        uint z_ = uint(k) + uint(GRID_BIAS);                                                            \
         uint bit_ = GRID_LOW(x_, y_, z_) & 511u;                                                        \
         uint low_ = GRID_LOW(x_, y_, z_) - bit_;                                                        \
         uint high_ = GRID_HIGH(x_, y_);                                                                 \
