@@ -5,8 +5,10 @@
 // whose lowest 9 bits are 0, is the leaf's. GRID_NONE twice: of no cell.
 #define GRID_NONE 0xffffffffu
 #define GRID_BIAS 1048576
-#define GRID_LOW(i, j, k) ((((j) >> 3) << 27) | (((k) >> 3) << 9) | (((i) & 7u) << 6) | (((j) & 7u) << 3) | ((k) & 7u))
-#define GRID_HIGH(i, j) ((((i) >> 3) << 13) | ((j) >> 8))
+#define GRID_LEAF_LOW(y, z) (((y) << 27) | ((z) << 9))
+#define GRID_LEAF_HIGH(x, y) (((x) << 13) | ((y) >> 5))
+#define GRID_LOW(i, j, k) (GRID_LEAF_LOW((j) >> 3, (k) >> 3) | (((i) & 7u) << 6) | (((j) & 7u) << 3) | ((k) & 7u))
+#define GRID_HIGH(i, j) GRID_LEAF_HIGH((i) >> 3, (j) >> 3)
 // Of a key's words the leaf's coordinates plus 2^17.
 #define GRID_LEAF_X(high) ((high) >> 13)
 #define GRID_LEAF_Y(low, high) ((((high) & 0x1fffu) << 5) | ((low) >> 27))

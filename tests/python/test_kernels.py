@@ -193,6 +193,36 @@ def test_groups_and_several_kernels_of_a_file(write, on):
     assert np.array_equal(values, 2 * np.arange(1001))
 
 
+# Halves of numbers, and which of two cells of a grid, (0, 0, 0) and (1, 2, 3), (i, 2, 3) is.
+WORDS = '''
+KERNEL(words, 64)
+    BUFFER_IN(0, float, src)
+    GRID_IN(1, grid)
+    BUFFER_OUT(5, uint, half_of)
+    BUFFER_OUT(6, uint, cell)
+    PARAMS(SumParams, p)
+BEGIN
+    if (GLOBAL_ID < p.count) {
+        half_of[GLOBAL_ID] = half_bits(src[GLOBAL_ID]);
+        GRID_FIND(at, grid, 1u, int(GLOBAL_ID), 2, 3)
+        cell[GLOBAL_ID] = at;
+    }
+END
+'''
+
+
+def test_words_of_halves_and_grids(write, on):
+    src = np.random.default_rng(4).normal(size=100).astype(np.float32)
+    half_of, cell = np.zeros(100, np.uint32), np.zeros(100, np.uint32)
+    leaf = {'grid_leaf_low': [1 << 26], 'grid_leaf_high': [1 << 30 | 1 << 12], 'grid_first': [0, 2],
+            'grid_mask': [1, 0, 1 << 19] + 13 * [0]}
+    call = kernels.load(write(WORDS, 'words'), sizes={name: len(words) for name, words in leaf.items()})
+    call(on, src=src, half_of=half_of, cell=cell, count=100,
+         **{name: np.array(words, np.uint32) for name, words in leaf.items()})
+    assert np.array_equal(half_of, src.astype(np.float16).view(np.uint16))
+    assert cell[1] == 1 and np.all(np.delete(cell, 1) == 0xffffffff)
+
+
 def test_what_it_declares(blend):
     assert blend.name == 'blend' and blend.group_size == 64
     assert blend.buffers == {'src': ('in', np.float32), 'dst': ('inout', np.float32), 'index': ('out', np.int32)}

@@ -27,6 +27,13 @@ constexpr std::size_t alignment = 64;  // a cache line, and the widest vector re
 // Of large buffers, which the system then fills by whole pages of this size, 512 times as few.
 constexpr std::size_t huge_page = std::size_t{2} << 20, least_huge = 2 * huge_page;
 
+// The system may leave it.
+void ask_for_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::uint64_t bytes) {
+#ifdef MADV_HUGEPAGE
+    madvise(data, bytes, MADV_HUGEPAGE);
+#endif
+}
+
 class NativeMemory final : public Memory {
   public:
     NativeMemory(const Device& device, std::uint64_t bytes, const std::string& name)
@@ -39,16 +46,10 @@ class NativeMemory final : public Memory {
             throw OutOfMemory(ErrorKind::input, "buffer " + name + ": the system has no " +
                                                     std::to_string(bytes) + " bytes left");
         }
-#ifdef MADV_HUGEPAGE
-        if (unit == huge_page) madvise(data_, padded, MADV_HUGEPAGE);  // or not, as it likes
-#endif
+        if (unit == huge_page) ask_for_huge_pages(data_, padded);
     }
-    ~NativeMemory() override {
-        std::free(data_);
-    }
-    std::byte* host_address() override {
-        return data_;
-    }
+    ~NativeMemory() override { std::free(data_); }
+    std::byte* host_address() override { return data_; }
 
   private:
     std::byte* data_;
