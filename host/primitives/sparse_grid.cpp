@@ -29,10 +29,10 @@ void shift(device::Queue& queue, const Words& low, const Words& high, const Offs
            std::uint32_t bits, const Words& low_to, const Words& high_to) {
     for (const Tile& tile : tiles(queue.device(), size(low)))
         queue.add<kernels::GridShift>(tile.count,
-                                      {.low = part(low, tile.first, tile.count),
-                                       .high = part(high, tile.first, tile.count),
-                                       .low_to = part(low_to, tile.first, tile.count),
-                                       .high_to = part(high_to, tile.first, tile.count)},
+                                      {.low = part(low, tile),
+                                       .high = part(high, tile),
+                                       .low_to = part(low_to, tile),
+                                       .high_to = part(high_to, tile)},
                                       {tile.count, by[0], by[1], by[2], bits});
 }
 
@@ -65,8 +65,8 @@ class Packing {
             const std::uint64_t first = tile.first / group,
                                 count = (tile.count + group - 1) / group;
             queue.add<kernels::GridBounds>(count,
-                                           {.low = part(low, tile.first, tile.count),
-                                            .high = part(high, tile.first, tile.count),
+                                           {.low = part(low, tile),
+                                            .high = part(high, tile),
                                             .dst = part(bounds, first, 6 * stride - first)},
                                            {tile.count, static_cast<std::uint32_t>(stride)});
         }
@@ -99,21 +99,19 @@ class Packing {
 
     void pack(device::Queue& queue, const Words& low, const Words& high, const Words& to) const {
         for (const Tile& tile : tiles(queue.device(), size(low)))
-            queue.add<kernels::GridPack>(tile.count,
-                                         {.low = part(low, tile.first, tile.count),
-                                          .high = part(high, tile.first, tile.count),
-                                          .packed = part(to, tile.first, tile.count)},
-                                         of(tile));
+            queue.add<kernels::GridPack>(
+                tile.count,
+                {.low = part(low, tile), .high = part(high, tile), .packed = part(to, tile)},
+                of(tile));
     }
     // The first ones, as many as there is room for.
     void unpack(device::Queue& queue, const Words& from, const Words& low,
                 const Words& high) const {
         for (const Tile& tile : tiles(queue.device(), size(low)))
-            queue.add<kernels::GridUnpack>(tile.count,
-                                           {.packed = part(from, tile.first, tile.count),
-                                            .low = part(low, tile.first, tile.count),
-                                            .high = part(high, tile.first, tile.count)},
-                                           of(tile));
+            queue.add<kernels::GridUnpack>(
+                tile.count,
+                {.packed = part(from, tile), .low = part(low, tile), .high = part(high, tile)},
+                of(tile));
     }
 
   private:
@@ -141,9 +139,9 @@ void search(device::Queue& queue, const Words& low, const Words& high, const Wor
         queue.add<kernels::SearchKeys>(tile.count,
                                        {.low = low,
                                         .high = high,
-                                        .low_of = part(low_of, tile.first, tile.count),
-                                        .high_of = part(high_of, tile.first, tile.count),
-                                        .place = part(place, tile.first, tile.count)},
+                                        .low_of = part(low_of, tile),
+                                        .high_of = part(high_of, tile),
+                                        .place = part(place, tile)},
                                        {tile.count, static_cast<std::uint32_t>(size(low))});
 }
 
@@ -158,15 +156,12 @@ SparseGrid SparseGrid::of_points(device::Device& device, const device::Slice<flo
         high(device, count, "high words of points' cells");
     device::Queue queue(device);
     for (const Tile& tile : tiles(device, count)) {
-        const auto of = [&](const device::Slice<float>& all) {
-            return device::Slice<float>{part(Words{all.range}, tile.first, tile.count).range};
-        };
         queue.add<kernels::GridKeys>(tile.count,
-                                     {.x = of(x),
-                                      .y = of(y),
-                                      .z = of(z),
-                                      .low = part(low, tile.first, tile.count),
-                                      .high = part(high, tile.first, tile.count)},
+                                     {.x = part(x, tile),
+                                      .y = part(y, tile),
+                                      .z = part(z, tile),
+                                      .low = part(low, tile),
+                                      .high = part(high, tile)},
                                      {tile.count, 1 / edge_m});
     }
     queue.run();
@@ -254,15 +249,12 @@ void SparseGrid::find(device::Queue& queue, const Coordinates& i, const Coordina
         check_size(Words{c->range}, i.range.bytes / sizeof(std::int32_t), "a coordinate of cells");
     check_size(place, size(Words{i.range}), "the places of cells");
     for (const Tile& tile : tiles(queue.device(), size(Words{i.range}))) {
-        const auto of = [&](const Coordinates& all) {
-            return Coordinates{part(Words{all.range}, tile.first, tile.count).range};
-        };
         queue.add<kernels::GridFind>(tile.count,
-                                     {.i = of(i),
-                                      .j = of(j),
-                                      .k = of(k),
+                                     {.i = part(i, tile),
+                                      .j = part(j, tile),
+                                      .k = part(k, tile),
                                       .grid = *this,
-                                      .place = part(place, tile.first, tile.count)},
+                                      .place = part(place, tile)},
                                      {tile.count, leaves});
     }
 }

@@ -29,6 +29,13 @@ inline Words part(const Words& words, std::uint64_t first, std::uint64_t count) 
 struct Tile {
     std::uint32_t first, count;
 };
+inline Words part(const Words& words, const Tile& tile) {
+    return part(words, tile.first, tile.count);
+}
+template <class T>
+device::Slice<T> part(const device::Slice<T>& all, const Tile& tile) {
+    return {part(Words{all.range}, tile).range};
+}
 // Tiles of an array that a dispatch may take as bindings, the largest of whole `unit`s, which are
 // multiples of slice_words; none of none.
 std::vector<Tile> tiles(const device::Device& device, std::uint64_t count,
