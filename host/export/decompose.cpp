@@ -17,24 +17,22 @@ namespace {
 // A clump is convex enough where the hulls of its pieces are this share of it larger, and a piece
 // where its own is so many voxels larger, or this share of the clump.
 constexpr double slight_share = 0.15, slight_voxels = 24, slight_piece = 0.12;
-// A cut must take this share of a piece's excess away.
+// A cut must take this share of what the piece's box holds beyond it away.
 constexpr double least_gain = 0.1;
+// Of a box that cells fill.
+constexpr double full = 0.85;
 constexpr std::size_t most_parts = 8;
-// Of places for a cut along each axis: at changes of the section, and evenly spread ones.
-constexpr std::size_t most_changes = 3, even_places = 2;
 
 struct Piece {
     std::int32_t id = 0;
     std::vector<std::size_t> cells;
     Extents<std::int32_t> box;
-    double hull = 0;                  // its volume, in voxels
     double excess = 0;                // what the hull holds beyond the solid, in voxels
     std::optional<PieceSolid> solid;  // once it was asked for
     bool final = false;
 };
 
-// Cuts are looked for on whole voxels, of which few are corners of a hull: those that end a row
-// along each axis.
+// Cuts are looked for by the boxes around what they leave, which takes no hulls.
 class Decomposition {
   public:
     Decomposition(const SolidScene& solids, std::vector<Cell> cells)
@@ -43,8 +41,7 @@ class Decomposition {
         for (std::size_t n = 0; n < grid_.cells().size(); ++n) all.cells.push_back(n);
         bound(all);
         mark(all);
-        std::vector<Vec3> points;
-        measure(all, hull_with(points, corners(all, 0, {})[0]));
+        measure(all);
         pieces_.push_back(std::move(all));
     }
 
@@ -113,8 +110,8 @@ class Decomposition {
             above.id = static_cast<std::int32_t>(pieces_.size());
             mark(below);
             mark(above);
-            measure(below, cut->hull_below);
-            measure(above, cut->hull_above);
+            measure(below);
+            measure(above);
             excess += below.excess + above.excess;
             pieces_[worst] = std::move(below);
             pieces_.push_back(std::move(above));
@@ -159,156 +156,75 @@ class Decomposition {
     void mark(const Piece& piece) {
         for (const std::size_t n : piece.cells) grid_.mark(n, piece.id);
     }
-    // Corners of the piece's cells, in voxels, as far as they may be those of the hull of a slab of
-    // it. slab: by layer from the piece's lowest along an axis; none: all is one slab.
-    std::vector<std::vector<Vec3>> corners(const Piece& piece, std::size_t axis,
-                                           std::span<const std::size_t> slab_of_layer) const {
-        const auto slab_of = [&](const Voxel& at) {
-            return slab_of_layer.empty() ? 0 : slab_of_layer[at[axis] - piece.box.low[axis]];
-        };
-        std::vector<std::vector<Vec3>> out(slab_of(piece.box.high) + 1);
-        for (const std::size_t n : piece.cells) {
-            const Voxel& at = grid_[n].at;
-            const std::size_t slab = slab_of(at);
-            const auto ends_at = [&](std::size_t a, bool up) {
-                const std::uint32_t next = grid_.beside(n, a, up);
-                return !grid_.is(piece.id, next) || slab_of(grid_[next].at) != slab;
-            };
-            std::array<std::array<bool, 2>, 3> ends{};
-            bool corner = true;
-            for (std::size_t a = 0; a < 3 && corner; ++a) {
-                ends[a] = {ends_at(a, false), ends_at(a, true)};
-                corner = ends[a][0] || ends[a][1];
-            }
-            if (!corner) continue;
-            for (unsigned c = 0; c < 8; ++c) {
-                const std::array<unsigned, 3> bit{c & 1, c >> 1 & 1, c >> 2};
-                if (ends[0][bit[0]] && ends[1][bit[1]] && ends[2][bit[2]])
-                    out[slab].push_back(
-                        {double(at[0]) + bit[0], double(at[1]) + bit[1], double(at[2]) + bit[2]});
-            }
-        }
-        return out;
-    }
-    // hull: the volume of that of its voxels, in voxels.
-    void measure(Piece& piece, double hull) {
-        piece.hull = hull;
-        piece.excess = piece.hull - static_cast<double>(piece.cells.size());
-        if (piece.excess <= slight_voxels) return;
-        // Much of that may be the steps of slanted surfaces, which are of the voxels, not of the
-        // solid.
+    void measure(Piece& piece) {
+        if (static_cast<double>(piece.cells.size()) <= slight_voxels) return;
         const PieceSolid& solid = solid_of(piece);
         const double h = voxel_m_;
         piece.excess = solid.hull ? (solid.hull->volume_m3 - solid.m3) / (h * h * h) : 0;
     }
-    // Where to try cuts along an axis: the layers that begin where the section changes most, and
-    // some in between. Ascending, in layers from the piece's lowest.
-    std::vector<std::size_t> places(const Piece& piece, std::size_t axis) const {
-        const std::size_t layers = layers_of(piece.box, axis);
-        std::vector<std::int64_t> count(layers, 0);
-        for (const std::size_t n : piece.cells) ++count[grid_[n].at[axis] - piece.box.low[axis]];
-        std::vector<std::pair<std::int64_t, std::size_t>> changes;
-        for (std::size_t n = 1; n < layers; ++n)
-            changes.emplace_back(-std::abs(count[n] - count[n - 1]), n);
-        std::ranges::sort(changes);
-        std::vector<std::size_t> out;
-        for (std::size_t n = 0; n < std::min(most_changes, changes.size()); ++n)
-            out.push_back(changes[n].second);
-        for (std::size_t n = 1; n < even_places; ++n) out.push_back(n * layers / even_places);
-        std::ranges::sort(out);
-        out.erase(std::unique(out.begin(), out.end()), out.end());
-        std::erase(out, std::size_t{0});
-        return out;
-    }
 
+    // What lies on one side of a cut: so many cells in such a box.
+    struct Side {
+        Extents<std::int32_t> box;
+        double cells = 0;
+
+        void add(const Side& other) {
+            box.add(other.box.low);
+            box.add(other.box.high);
+            cells += other.cells;
+        }
+        double box_cells() const {
+            double out = 1;
+            for (std::size_t a = 0; a < 3; ++a) out *= static_cast<double>(layers_of(box, a));
+            return out;
+        }
+        bool fills_box() const { return cells >= full * box_cells(); }
+    };
     struct Cut {
         std::size_t axis;
-        std::int32_t layer;             // the first above it
-        double hull_below, hull_above;  // volumes, in voxels
+        std::int32_t layer;  // the first above it
     };
-    // A piece in slabs between the places for cuts along an axis. Volumes in voxels.
-    struct Slabs {
-        std::vector<std::size_t> first;          // layer of each but the lowest, from the piece's
-        std::vector<std::vector<Vec3>> corner;   // by slab
-        std::vector<double> solid_below, below;  // by cut: what lies below, and the hull of that
-    };
-    Slabs slabs_along(const Piece& piece, std::size_t axis) const {
-        Slabs out;
-        out.first = places(piece, axis);
-        const std::size_t layers = layers_of(piece.box, axis);
-        std::vector<std::size_t> slab_of_layer(layers, 0);
-        for (std::size_t n = 0; n < layers; ++n)
-            slab_of_layer[n] = static_cast<std::size_t>(std::ranges::upper_bound(out.first, n) -
-                                                        out.first.begin());
-        std::vector<double> solid(out.first.size() + 1, 0);
-        for (const std::size_t n : piece.cells)
-            ++solid[slab_of_layer[grid_[n].at[axis] - piece.box.low[axis]]];
-        out.corner = corners(piece, axis, slab_of_layer);
-        std::vector<Vec3> points;
-        double solid_below = 0;
-        for (std::size_t n = 0; n < out.first.size(); ++n) {
-            out.solid_below.push_back(solid_below += solid[n]);
-            out.below.push_back(hull_with(points, out.corner[n]));
+    // Calls use(cut, below, above) for each cut along an axis that leaves cells on both sides.
+    template <class Use>
+    void each_cut(const Piece& piece, std::size_t axis, const Use& use) const {
+        std::vector<Side> layer(layers_of(piece.box, axis));
+        for (const std::size_t n : piece.cells) {
+            Side& at = layer[grid_[n].at[axis] - piece.box.low[axis]];
+            at.box.add(grid_[n].at);
+            ++at.cells;
         }
-        return out;
+        std::vector<Side> above(layer.size());
+        for (std::size_t n = layer.size(); n-- > 0;) {
+            if (n + 1 < layer.size()) above[n] = above[n + 1];
+            if (layer[n].cells > 0) above[n].add(layer[n]);
+        }
+        Side below;
+        for (std::size_t n = 1; n < layer.size(); ++n) {
+            if (layer[n - 1].cells > 0) below.add(layer[n - 1]);
+            if (layer[n].cells > 0)
+                use(Cut{axis, piece.box.low[axis] + static_cast<std::int32_t>(n)}, below, above[n]);
+        }
     }
-    // The volume of the hull of both; of the first the corners of that are left.
-    static double hull_with(std::vector<Vec3>& points, const std::vector<Vec3>& more) {
-        points.insert(points.end(), more.begin(), more.end());
-        auto hull = hull_part(points);
-        if (!hull) return 0;
-        points = std::move(hull->corner);
-        return hull->volume_m3;
-    }
-    // The cut that leaves least. Where none takes much away, as of a box that is hollow, the one
-    // that takes off most of what is convex.
+    // The cut that leaves the smallest boxes. Where none takes much away, as of a box that is
+    // hollow, the one that takes off most of what fills its own.
     std::optional<Cut> best_cut(const Piece& piece) const {
-        const auto all = static_cast<double>(piece.cells.size());
-        double least = piece.hull - least_gain * piece.excess;
-        std::optional<Cut> best;
-        std::array<Slabs, 3> along;
-        for (std::size_t a = 0; a < 3; ++a) {
-            along[a] = slabs_along(piece, a);
-            const Slabs& slabs = along[a];
-            std::vector<Vec3> points;
-            for (std::size_t n = slabs.first.size(); n-- > 0;) {
-                const auto& next = slabs.corner[n + 1];
-                // A hull is no smaller than what is solid of it.
-                if (slabs.below[n] + all - slabs.solid_below[n] >= least) {
-                    points.insert(points.end(), next.begin(), next.end());
-                    continue;
+        const Side all{piece.box, static_cast<double>(piece.cells.size())};
+        double least = all.box_cells() - least_gain * (all.box_cells() - all.cells), most = 0;
+        std::optional<Cut> best, peel;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            each_cut(piece, axis, [&](const Cut& cut, const Side& below, const Side& above) {
+                if (const double left = below.box_cells() + above.box_cells(); left < least) {
+                    least = left;
+                    best = cut;
                 }
-                const double above = hull_with(points, next);
-                if (slabs.below[n] + above >= least) continue;
-                least = slabs.below[n] + above;
-                best = {a, piece.box.low[a] + static_cast<std::int32_t>(slabs.first[n]),
-                        slabs.below[n], above};
-            }
+                for (const Side& side : {below, above}) {
+                    if (side.cells <= most || !side.fills_box()) continue;
+                    most = side.cells;
+                    peel = cut;
+                }
+            });
         }
-        return best ? best : best_peel(piece, along);
-    }
-    std::optional<Cut> best_peel(const Piece& piece, const std::array<Slabs, 3>& along) const {
-        const auto all = static_cast<double>(piece.cells.size());
-        const auto convex = [](double hull, double solid) {
-            return hull - solid <= slight_share * solid;
-        };
-        double most = 0;
-        std::optional<Cut> peel;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const Slabs& slabs = along[a];
-            std::vector<Vec3> points;
-            for (std::size_t n = slabs.first.size(); n-- > 0;) {
-                const double below = slabs.below[n], above = hull_with(points, slabs.corner[n + 1]);
-                const double solid_below = slabs.solid_below[n], solid_above = all - solid_below;
-                const double off = std::max(convex(below, solid_below) ? solid_below : 0,
-                                            convex(above, solid_above) ? solid_above : 0);
-                if (off <= most) continue;
-                most = off;
-                peel = {a, piece.box.low[a] + static_cast<std::int32_t>(slabs.first[n]), below,
-                        above};
-            }
-        }
-        return peel;
+        return best ? best : peel;
     }
 
     double voxel_m_;
@@ -348,7 +264,9 @@ std::vector<Decomposed> decompose(const SolidScene& solids, std::span<const Clum
                                   ThreadPool& threads) {
     auto cells = cells_of(solids, clumps);
     std::vector<Decomposed> out(clumps.size());
-    threads.each(clumps.size(), 1, [&](std::size_t n) {
+    std::vector<std::size_t> sizes;
+    for (const auto& of : cells) sizes.push_back(of.size());
+    threads.each_largest_first(sizes, [&](std::size_t n) {
         if (cells[n].empty()) return;
         Decomposition pieces(solids, std::move(cells[n]));
         std::optional<Decomposed> slab;

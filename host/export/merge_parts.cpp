@@ -26,7 +26,7 @@ constexpr double deeper_m = 1e-4;
 struct Pair {
     double added_m3;
     std::size_t a, b;
-    std::size_t hull;  // of both, among those that were found
+    std::size_t hull = 0;  // of both, among those that were found
     // Cheapest first, then oldest, so that the order is the same everywhere.
     bool operator<(const Pair& other) const {
         return std::tie(added_m3, a, b) > std::tie(other.added_m3, other.a, other.b);
@@ -84,9 +84,14 @@ class Merging {
         for (const ConvexPart& part : body.parts) parts_.emplace_back(part);
     }
 
-    std::vector<ConvexPart> run() {
-        for (std::size_t a = 0; a < parts_.size(); ++a)
-            for (std::size_t b = a + 1; b < parts_.size(); ++b) consider(a, b);
+    std::vector<ConvexPart> run(ThreadPool& threads) {
+        std::vector<std::vector<Joined>> with(parts_.size());
+        threads.each(parts_.size(), 1, [&](std::size_t a) {
+            for (std::size_t b = a + 1; b < parts_.size(); ++b)
+                if (auto both = joined_if_worth(a, b)) with[a].push_back(*std::move(both));
+        });
+        for (std::vector<Joined>& each : with)
+            for (Joined& both : each) add(std::move(both));
         while (!pairs_.empty()) {
             const Pair best = pairs_.top();
             pairs_.pop();
@@ -99,7 +104,8 @@ class Merging {
             gone_[best.a] = gone_[best.b] = true;
             parts_.emplace_back(simplified(std::move(both), fine_voxels * voxel_m_));
             gone_.push_back(false);
-            for (std::size_t n = 0; n + 1 < parts_.size(); ++n) consider(n, parts_.size() - 1);
+            for (std::size_t n = 0; n + 1 < parts_.size(); ++n)
+                if (auto pair = joined_if_worth(n, parts_.size() - 1)) add(*std::move(pair));
         }
         std::vector<ConvexPart> left;
         for (std::size_t n = 0; n < parts_.size(); ++n)
@@ -108,10 +114,14 @@ class Merging {
     }
 
   private:
-    void consider(std::size_t first, std::size_t second) {
-        if (gone_[first] || gone_[second]) return;
+    struct Joined {
+        Pair pair;
+        ConvexPart both;
+    };
+    std::optional<Joined> joined_if_worth(std::size_t first, std::size_t second) const {
+        if (gone_[first] || gone_[second]) return std::nullopt;
         const ConvexPart &a = parts_[first].part, &b = parts_[second].part;
-        if (!near(a, b, voxel_m_)) return;
+        if (!near(a, b, voxel_m_)) return std::nullopt;
         const double apart_m3 = a.volume_m3 + b.volume_m3;
         const double most_m3 = std::max(apart_m3 / (1 - most_of_both), apart_m3 + crumb_m3_);
         // A hull has hardly more surface than both.
@@ -119,15 +129,20 @@ class Merging {
         if (std::max(least_hull_m3(parts_[first], parts_[second]),
                      least_hull_m3(parts_[second], parts_[first])) >
             std::max(most_m3, apart_m3 + layer_m3(surface_m2)))
-            return;
-        if (apart(a, b).gap_m > voxel_m_) return;
+            return std::nullopt;
+        if (apart(a, b).gap_m > voxel_m_) return std::nullopt;
         auto both = joined(a, b);
-        if (!both) return;
+        if (!both) return std::nullopt;
         const double added = both->volume_m3 - apart_m3;
-        if (added > most_m3_) return;
-        if (both->volume_m3 > most_m3 && added > layer_m3(Faced(*both).surface_m2())) return;
-        pairs_.push({added, first, second, hulls_.size()});
-        hulls_.push_back(*std::move(both));
+        if (added > most_m3_) return std::nullopt;
+        if (both->volume_m3 > most_m3 && added > layer_m3(Faced(*both).surface_m2()))
+            return std::nullopt;
+        return Joined{{added, first, second}, *std::move(both)};
+    }
+    void add(Joined found) {
+        found.pair.hull = hulls_.size();
+        pairs_.push(found.pair);
+        hulls_.push_back(std::move(found.both));
     }
     double layer_m3(double surface_m2) const { return layer_voxels * voxel_m_ * surface_m2 / 2; }
     bool reaches_deeper(const ConvexPart& both, const ConvexPart& a, const ConvexPart& b) const {
@@ -153,13 +168,15 @@ void merge_parts(std::vector<Body>& bodies, double voxel_m, ThreadPool& threads)
     std::vector<Extents<double>> around(bodies.size());
     for (std::size_t n = 0; n < bodies.size(); ++n) around[n] = box_around(bodies[n].parts);
     std::vector<std::vector<ConvexPart>> merged(bodies.size());
-    threads.each(bodies.size(), 1, [&](std::size_t n) {
+    std::vector<std::size_t> sizes;
+    for (const Body& body : bodies) sizes.push_back(body.parts.size());
+    threads.each_largest_first(sizes, [&](std::size_t n) {
         std::vector<const ConvexPart*> others;
         for (std::size_t k = 0; k < bodies.size(); ++k)
             if (k != n && near(around[n], around[k], 0))
                 for (const ConvexPart& part : bodies[k].parts)
                     if (near(around[n], part, 0)) others.push_back(&part);
-        merged[n] = Merging(bodies[n], std::move(others), voxel_m).run();
+        merged[n] = Merging(bodies[n], std::move(others), voxel_m).run(threads);
     });
     for (std::size_t n = 0; n < bodies.size(); ++n) bodies[n].parts = std::move(merged[n]);
 }
