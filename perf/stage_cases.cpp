@@ -91,6 +91,10 @@ StageScene make_stage_scene(device::Device& device) {
     StageScene scene;
     scene.sequence = scenes::walk(scenes::furnished_room({.seed = 1}), camera);
     scene.ingested = observe_cloud(device, scene.sequence.cloud, {});
+    for (DepthFrame& frame : scene.sequence.frames) {
+        for (std::size_t a = 0; a < 3; ++a)
+            frame.camera_to_world[4 * a + 3] -= scene.ingested.origin_m[a];
+    }
     Timings ignored;
     scene.geometry = segment(device, scene, ignored);
     return scene;

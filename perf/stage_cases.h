@@ -18,9 +18,11 @@ namespace topple::perf {
 inline constexpr double stage_voxel_m = 0.02;
 
 struct StageScene {
-    scenes::Sequence sequence;  // 40 frames of a walk through a room: 3.0 million rays
-    Observation ingested;       // its fused cloud of 690,000 points, bare as a file would give it
-    Surfaces geometry;          // what the stages below start from
+    // 40 frames of a walk through a room: 3.0 million rays. Poses are reckoned from where the
+    // observation's coordinates are.
+    scenes::Sequence sequence;
+    Observation ingested;  // its fused cloud of 690,000 points, bare as a file would give it
+    Surfaces geometry;     // what the stages below start from
 };
 StageScene make_stage_scene(device::Device& device);
 

@@ -2,9 +2,6 @@
 #include "perf/peers/cloud_peers.h"
 
 #include <fstream>
-#include <sstream>
-
-#include "perf/peers/script.h"
 
 namespace topple::perf {
 namespace {
@@ -26,14 +23,11 @@ std::vector<CloudPeer> cloud_peers(const CloudView& cloud) {
     for (std::size_t i = 0; i < cloud.size(); ++i)
         rows.insert(rows.end(), {cloud.x[i], cloud.y[i], cloud.z[i]});
     points.write({reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(float)});
-    std::istringstream lines(answer_of("cloud_peers.py", {&points, &labels}));
     std::vector<CloudPeer> out;
-    for (CloudPeer peer; std::getline(lines, peer.name, '|') &&
-                         std::getline(lines, peer.library, '|') && lines >> peer.seconds >> std::ws;
-         peer = {}) {
-        if (peer.name.starts_with("segmentation/"))
-            peer.label = labels_of(labels.path(), cloud.size());
-        out.push_back(std::move(peer));
+    for (const Told& told : times_of("cloud_peers.py", {&points, &labels})) {
+        out.push_back({told, {}});
+        if (told.name.starts_with("segmentation/"))
+            out.back().label = labels_of(labels.path(), cloud.size());
     }
     return out;
 }

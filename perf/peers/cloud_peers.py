@@ -5,7 +5,6 @@ Prints a line for each that is installed: what it did, its name and version, and
 takes the planar patch of each point, int32, -1 for none, where Open3D finds them."""
 import os
 import sys
-import time
 from importlib.metadata import version
 
 try:
@@ -13,21 +12,10 @@ try:
 except ImportError:
     sys.exit(0)
 
+from timing import best, tell, tell_all
+
 NEIGHBOURS, THREADS = 30, len(os.sched_getaffinity(0))
 points = np.fromfile(sys.argv[1], np.float32).reshape(-1, 3)
-
-
-def best(run, count=3):
-    seconds = float('inf')
-    for _ in range(count):
-        start = time.perf_counter()
-        result = run()
-        seconds = min(seconds, time.perf_counter() - start)
-    return seconds, result
-
-
-def tell(what, library, seconds):
-    print(f'{what}|{library}|{seconds}', flush=True)
 
 
 def small_gicp_normals():
@@ -69,8 +57,4 @@ def open3d_patches():
 
 
 if __name__ == '__main__':
-    for peer in (small_gicp_normals, open3d_normals, open3d_patches):
-        try:
-            peer()
-        except ImportError:
-            pass
+    tell_all((small_gicp_normals, open3d_normals, open3d_patches))

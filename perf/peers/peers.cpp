@@ -8,6 +8,7 @@
 
 #include "lab/scores/score.h"
 #include "perf/peers/cloud_peers.h"
+#include "perf/peers/frame_peers.h"
 #include "perf/peers/octomap_carving.h"
 #include "perf/peers/pcl_segmentation.h"
 
@@ -103,6 +104,15 @@ std::vector<Result> compare_with_peers(const StageScene& scene, const StageRun& 
         agreement.print();
     } else {
         std::printf("OctoMap: not in this build; apt-get install liboctomap-dev\n");
+    }
+    const std::vector<Told> mappers =
+        frame_peers(scene.sequence.intrinsics, scene.sequence.frames, stage_voxel_m);
+    if (mappers.empty())
+        std::printf("VDBFusion, DUFOMap, Open3D: not found by python3; they are on PyPI\n");
+    for (const Told& peer : mappers) {
+        results.push_back(peer_result(peer.name, peer.library, carving.work, peer.seconds));
+        print_row(carving, results.back());
+        std::printf("%s\n", peer.library.c_str());
     }
     std::fflush(stdout);
     return results;

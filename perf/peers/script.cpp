@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 
 #include "topple/error.h"
 
@@ -38,6 +39,15 @@ std::string answer_of(const char* script, std::initializer_list<const ScriptFile
         pclose(pipe);
     }
     return answer;
+}
+
+std::vector<Told> times_of(const char* script, std::initializer_list<const ScriptFile*> files) {
+    std::istringstream lines(answer_of(script, files));
+    std::vector<Told> out;
+    for (Told told; std::getline(lines, told.name, '|') && std::getline(lines, told.library, '|') &&
+                    lines >> told.seconds >> std::ws;)
+        out.push_back(told);
+    return out;
 }
 
 }  // namespace topple::perf
