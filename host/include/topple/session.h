@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "topple/frames_view.h"
+#include "topple/parse.h"
+
+// A scan that is still being made: frames come one by one, a SLAM system corrects their poses, and
+// in between one asks what is there and what may fall.
+namespace topple {
+
+// Of a frame that was added: 0, 1, 2 .. in the order in which they came.
+using FrameId = std::uint64_t;
+// Of a thing, the same from update to update.
+using ThingId = std::uint64_t;
+
+enum class Change : std::uint8_t {
+    none,
+    appeared,  // it was not there, or not seen, in the update before
+    moved,     // what was elsewhere, as its size and weight tell
+    changed,   // it stands on something else, or its category of risk is another
+    vanished,  // it was there in the update before
+};
+
+struct Thing {
+    ThingId id = 0;            // 0: the building
+    std::int32_t object = -1;  // its place in Scene::objects; -1: it vanished
+    Change change = Change::none;
+    double moved_m = 0;  // how far, where it moved
+};
+
+// What an update has found.
+struct LiveScene {
+    std::shared_ptr<const ParseResult> result;
+    std::vector<Thing> things;    // by Scene::objects, then what vanished
+    std::vector<FrameId> frames;  // that it was parsed from
+};
+
+// A thing for each pixel, rows from the upper one down; -1: nothing that is known.
+struct ThingLabels {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::int64_t> thing;
+};
+
+struct SessionOptions {
+    ParseOptions parse;
+    // That kept frames take, compressed: 640 x 480 pixels about 0.3 MB. Where that is not enough
+    // the frame goes whose camera has a neighbour in time next to it.
+    std::uint64_t max_frame_bytes = 2'000'000'000;
+};
+
+// One thread may add, correct and forget frames while another updates and any number read scenes.
+// Errors are those of parse().
+class Session {
+  public:
+    // colour_intrinsics: of the colour images; none: the depth images', scaled to their size.
+    explicit Session(const Intrinsics& intrinsics,
+                     const std::optional<Intrinsics>& colour_intrinsics = {},
+                     SessionOptions options = {});
+    ~Session();
+    Session(Session&&) noexcept;
+    Session& operator=(Session&&) noexcept;
+
+    // Copies the frame. Throws Error(input) for one without readings, for the frame before once
+    // more, and for images and poses that parse() refuses; the session stays as it was.
+    FrameId add(const FrameView& frame, const Mat4& camera_to_world);
+    // After a loop closure: the poses that are others now. Those of frames that are not kept any
+    // more count for nothing. Throws Error: usage (there was no such frame), input (no pose); no
+    // pose is changed then.
+    void correct(const std::map<FrameId, Mat4>& camera_to_world);
+    // Leaves a frame out. Throws Error(usage) where there is none of that number.
+    void forget(FrameId frame);
+    std::vector<FrameId> frames() const;  // that are kept, ascending
+    std::uint64_t frame_bytes() const;    // that they take
+
+    // Parses the frames that are there now. Its result is bit for bit parse()'s of the same frames
+    // and poses, whatever was added, corrected or forgotten before. One at a time; where nothing
+    // has changed since, it is the one before, with no changes. Throws what parse() does; the scene
+    // before stays then.
+    std::shared_ptr<const LiveScene> update();
+    // Of the last update; null before the first.
+    std::shared_ptr<const LiveScene> scene() const;
+    // The things of that scene in a depth frame. Throws Error(usage) before the first update.
+    ThingLabels label(const FrameView& frame, const Mat4& camera_to_world) const;
+
+  private:
+    class State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace topple

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include "topple/session.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "core/checksum.h"
+#include "live/kept_frame.h"
+#include "live/known_things.h"
+#include "points/caller_frames.h"
+#include "points/formats/rigid_pose.h"
+#include "topple/error.h"
+#include "topple/frame_labels.h"
+
+namespace topple {
+namespace {
+
+// Things are told by this many frames at most, each with so many pixels in a row.
+constexpr std::size_t most_telling = 48;
+constexpr std::uint32_t telling_width = 160;
+
+std::string name_of(FrameId frame) {
+    return "frame " + std::to_string(frame);
+}
+
+// A frame of the caller's as parse() would take it: checked, its colours as the depth camera sees
+// them.
+DepthFrame taken(const Intrinsics& k, const std::optional<Intrinsics>& colour,
+                 const FrameView& frame, const Mat4& pose, const std::string& source) {
+    FramesView view;
+    view.intrinsics = k;
+    view.colour_intrinsics = colour;
+    view.camera_to_world = {pose};
+    view.images = {frame};
+    view.source = source;
+    return CallerFrames(view).load_coloured(0);
+}
+
+FrameView view_of(const DepthFrame& frame, const Intrinsics& k) {
+    FrameView out;
+    out.depth = {frame.depth.data(), k.width, k.height};
+    if (!frame.rgb.empty())
+        out.colour = {reinterpret_cast<const Rgb*>(frame.rgb.data()), k.width, k.height};
+    return out;
+}
+
+// Each step-th pixel of an image, and of its rows.
+struct Coarse {
+    explicit Coarse(const Intrinsics& k)
+        : step(std::max(1u, k.width / telling_width)), intrinsics(k) {
+        const double s = step;
+        intrinsics.width = k.width / step;
+        intrinsics.height = k.height / step;
+        intrinsics.fx /= s;
+        intrinsics.fy /= s;
+        intrinsics.cx /= s;
+        intrinsics.cy /= s;
+    }
+    DepthFrame of(const DepthFrame& frame, std::uint32_t width) const {
+        DepthFrame out;
+        for (std::size_t v = 0; v < intrinsics.height; ++v)
+            for (std::size_t u = 0; u < intrinsics.width; ++u)
+                out.depth.push_back(frame.depth[v * step * width + u * step]);
+        return out;
+    }
+    std::uint32_t step;
+    Intrinsics intrinsics;
+};
+
+// How far apart two cameras are: 1 for 5 cm, or for 5 degrees.
+double apart(const Mat4& a, const Mat4& b) {
+    constexpr double metres = 0.05, radians = 5 * M_PI / 180;
+    double trace = 0, square = 0;
+    for (std::size_t r = 0; r < 3; ++r) {
+        for (std::size_t c = 0; c < 3; ++c) trace += a[4 * r + c] * b[4 * r + c];
+        square += (a[4 * r + 3] - b[4 * r + 3]) * (a[4 * r + 3] - b[4 * r + 3]);
+    }
+    return std::sqrt(square) / metres + std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0)) / radians;
+}
+
+}  // namespace
+
+class Session::State {
+  public:
+    State(const Intrinsics& k, const std::optional<Intrinsics>& colour, SessionOptions options)
+        : k_(k), colour_(colour), options_(std::move(options)) {
+        check_options(options_.parse);
+        if (!options_.parse.cache_file.empty())
+            throw Error(ErrorKind::usage,
+                        "a session keeps no cache_file: leave it empty in its options");
+        if (options_.max_frame_bytes == 0)
+            throw Error(ErrorKind::usage, "max_frame_bytes is 0: a session needs room for frames");
+        if (!options_.parse.device) options_.parse.device = device::open_device("auto");
+    }
+
+    FrameId add(const FrameView& view, const Mat4& pose) {
+        const DepthFrame frame = taken(k_, colour_, view, pose, name_of(next_));
+        if (std::ranges::all_of(frame.depth, [](std::uint16_t d) { return d == 0; }))
+            throw Error(ErrorKind::input, name_of(next_) + ": it has no readings");
+        Checksum sum;
+        sum.add(frame.depth.data(), frame.depth.size() * sizeof(std::uint16_t));
+        sum.add(frame.camera_to_world.data(), sizeof(frame.camera_to_world));
+        if (sum.value() == last_)
+            throw Error(ErrorKind::input, name_of(next_) + ": it is the frame before once more");
+        auto kept = std::make_shared<const live::KeptFrame>(frame, k_.width);
+        const std::lock_guard lock(frames_mutex_);
+        last_ = sum.value();
+        bytes_ += kept->bytes();
+        frames_[next_] = {std::move(kept), frame.camera_to_world};
+        ++changes_;
+        while (bytes_ > options_.max_frame_bytes && frames_.size() > 1) drop_least_missed();
+        return next_++;
+    }
+    void correct(const std::map<FrameId, Mat4>& poses) {
+        std::map<FrameId, Mat4> rigid = poses;
+        for (auto& [frame, pose] : rigid) {
+            if (frame >= next_) no_such(frame);
+            if (const auto fault = io::make_rigid(pose))
+                throw Error(ErrorKind::input, name_of(frame) + ": camera_to_world: " + *fault);
+        }
+        const std::lock_guard lock(frames_mutex_);
+        for (const auto& [frame, pose] : rigid) {
+            const auto kept = frames_.find(frame);
+            if (kept == frames_.end() || kept->second.pose == pose) continue;
+            kept->second.pose = pose;
+            ++changes_;
+        }
+    }
+    void forget(FrameId frame) {
+        const std::lock_guard lock(frames_mutex_);
+        const auto kept = frames_.find(frame);
+        if (kept == frames_.end()) no_such(frame);
+        drop(kept);
+    }
+    std::vector<FrameId> frames() const {
+        const std::lock_guard lock(frames_mutex_);
+        std::vector<FrameId> out;
+        for (const auto& [frame, kept] : frames_) out.push_back(frame);
+        return out;
+    }
+    std::uint64_t frame_bytes() const {
+        const std::lock_guard lock(frames_mutex_);
+        return bytes_;
+    }
+
+    std::shared_ptr<const LiveScene> update() {
+        const std::lock_guard one_at_a_time(update_mutex_);
+        const auto [frames, changes] = snapshot();
+        if (frames.empty())
+            throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
+        auto found = std::make_shared<LiveScene>();
+        for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
+        if (const auto last = scene(); last && changes == parsed_changes_) {
+            *found = *last;
+            std::erase_if(found->things, [](const Thing& t) { return t.object < 0; });
+            for (Thing& thing : found->things) thing = {.id = thing.id, .object = thing.object};
+            publish(found);
+            return found;
+        }
+        FramesView view;
+        view.intrinsics = k_;
+        view.source = "session";
+        for (const auto& [frame, kept] : frames) view.camera_to_world.push_back(kept.pose);
+        DepthFrame current;
+        view.image = [&](std::size_t n) {
+            current = frames.at(found->frames[n]).frame->frame();
+            return view_of(current, k_);
+        };
+        found->result = std::make_shared<const ParseResult>(parse(view, options_.parse));
+        auto labeller = std::make_shared<const FrameLabeller>(*found->result);
+        found->things = known_.name(found->result->scene, shown(frames, *labeller));
+        parsed_changes_ = changes;
+        publish(found, std::move(labeller));
+        return found;
+    }
+    std::shared_ptr<const LiveScene> scene() const {
+        const std::lock_guard lock(scene_mutex_);
+        return scene_;
+    }
+    ThingLabels label(const FrameView& view, const Mat4& pose) const {
+        std::shared_ptr<const LiveScene> scene;
+        std::shared_ptr<const FrameLabeller> labeller;
+        {
+            const std::lock_guard lock(scene_mutex_);
+            scene = scene_;
+            labeller = labeller_;
+        }
+        if (!scene) throw Error(ErrorKind::usage, "session: nothing is known before update()");
+        FramesView frames;
+        frames.intrinsics = k_;
+        frames.colour_intrinsics = colour_;
+        frames.camera_to_world = {pose};
+        frames.images = {view};
+        const FrameLabels found = labeller->label(frames, 0);
+        ThingLabels out{found.width, found.height, {}};
+        out.thing.reserve(found.object.size());
+        for (const std::int32_t o : found.object)
+            out.thing.push_back(
+                o < 0 ? -1
+                      : static_cast<std::int64_t>(scene->things[static_cast<std::size_t>(o)].id));
+        return out;
+    }
+
+  private:
+    struct Kept {
+        std::shared_ptr<const live::KeptFrame> frame;
+        Mat4 pose{};
+    };
+    using Frames = std::map<FrameId, Kept>;
+
+    [[noreturn]] static void no_such(FrameId frame) {
+        throw Error(ErrorKind::usage, "session: there is no " + name_of(frame));
+    }
+    void drop(Frames::iterator kept) {
+        bytes_ -= kept->second.frame->bytes();
+        frames_.erase(kept);
+        ++changes_;
+    }
+    // The earlier of the two whose cameras are nearest to one another: what is new stays.
+    void drop_least_missed() {
+        auto least = frames_.begin();
+        double nearest = INFINITY;
+        for (auto at = frames_.begin(), next = std::next(at); next != frames_.end(); ++at, ++next) {
+            const double far = apart(at->second.pose, next->second.pose);
+            if (far >= nearest) continue;
+            nearest = far;
+            least = at;
+        }
+        drop(least);
+    }
+    std::pair<Frames, std::uint64_t> snapshot() const {
+        const std::lock_guard lock(frames_mutex_);
+        return {frames_, changes_};
+    }
+    // What some of the frames show, the same ones as long as they are there and not too many.
+    live::ShownObjects shown(const Frames& frames, const FrameLabeller& labeller) const {
+        FrameId every = 1;
+        const auto telling = [&] {
+            return static_cast<std::size_t>(std::ranges::count_if(
+                frames, [&](const auto& kept) { return kept.first % every == 0; }));
+        };
+        while (telling() > most_telling) every *= 2;
+        const Coarse coarse(k_);
+        live::ShownObjects out;
+        for (const auto& [frame, kept] : frames) {
+            if (frame % every != 0) continue;
+            const DepthFrame seen = coarse.of(kept.frame->frame(), k_.width);
+            FramesView view;
+            view.intrinsics = coarse.intrinsics;
+            view.camera_to_world = {kept.pose};
+            view.images = {view_of(seen, coarse.intrinsics)};
+            out[frame] = labeller.label(view, 0).object;
+        }
+        return out;
+    }
+    void publish(std::shared_ptr<const LiveScene> scene,
+                 std::shared_ptr<const FrameLabeller> labeller = nullptr) {
+        const std::lock_guard lock(scene_mutex_);
+        scene_ = std::move(scene);
+        if (labeller) labeller_ = std::move(labeller);
+    }
+
+    const Intrinsics k_;
+    const std::optional<Intrinsics> colour_;
+    SessionOptions options_;
+
+    mutable std::mutex frames_mutex_;
+    Frames frames_;
+    std::uint64_t bytes_ = 0, changes_ = 0;
+    FrameId next_ = 0;        // of the producer alone, as is
+    Checksum::Value last_{};  // the frame added last
+
+    std::mutex update_mutex_;
+    live::KnownThings known_;
+    std::uint64_t parsed_changes_ = 0;
+
+    mutable std::mutex scene_mutex_;
+    std::shared_ptr<const LiveScene> scene_;
+    std::shared_ptr<const FrameLabeller> labeller_;
+};
+
+Session::Session(const Intrinsics& intrinsics, const std::optional<Intrinsics>& colour_intrinsics,
+                 SessionOptions options)
+    : state_(std::make_unique<State>(intrinsics, colour_intrinsics, std::move(options))) {}
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+
+FrameId Session::add(const FrameView& frame, const Mat4& camera_to_world) {
+    return state_->add(frame, camera_to_world);
+}
+void Session::correct(const std::map<FrameId, Mat4>& camera_to_world) {
+    state_->correct(camera_to_world);
+}
+void Session::forget(FrameId frame) {
+    state_->forget(frame);
+}
+std::vector<FrameId> Session::frames() const {
+    return state_->frames();
+}
+std::uint64_t Session::frame_bytes() const {
+    return state_->frame_bytes();
+}
+std::shared_ptr<const LiveScene> Session::update() {
+    return state_->update();
+}
+std::shared_ptr<const LiveScene> Session::scene() const {
+    return state_->scene();
+}
+ThingLabels Session::label(const FrameView& frame, const Mat4& camera_to_world) const {
+    return state_->label(frame, camera_to_world);
+}
+
+}  // namespace topple

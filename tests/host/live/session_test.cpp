@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "topple/session.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "host/pipeline/scan.h"
+#include "host/pipeline/small_walk.h"
+
+// A session is a parse of the frames that it has, and knows things again.
+namespace topple::test {
+namespace {
+
+class Sessions : public Files {
+  protected:
+    static void SetUpTestSuite() { walk_ = new scenes::Sequence(small_walk()); }
+    static void TearDownTestSuite() { delete walk_; }
+
+    static SessionOptions quick() {
+        SessionOptions options;
+        options.parse = on(device::open_device("native", 2));
+        options.parse.disturbances = {"wind"};
+        return options;
+    }
+    static FrameView frame(std::size_t n) { return frames_view_of(*walk_).images.at(n); }
+    static const Mat4& pose(std::size_t n) { return walk_->frames.at(n).camera_to_world; }
+    static Mat4 shifted(Mat4 pose, double x_m) {
+        pose[3] += x_m;
+        return pose;
+    }
+    static void expect_same(const Scene& got, const Scene& expected) {
+        EXPECT_EQ(got.points.x, expected.points.x);
+        EXPECT_EQ(got.points.object, expected.points.object);
+        EXPECT_EQ(got.solid.x, expected.solid.x);
+        EXPECT_EQ(got.solid.object, expected.solid.object);
+        ASSERT_EQ(got.objects.size(), expected.objects.size());
+        for (std::size_t n = 0; n < got.objects.size(); ++n) {
+            EXPECT_EQ(got.objects[n].mass_kg, expected.objects[n].mass_kg);
+            EXPECT_EQ(got.objects[n].barrier_J, expected.objects[n].barrier_J);
+            EXPECT_EQ(got.objects[n].risk_J, expected.objects[n].risk_J);
+        }
+    }
+    static const scenes::Sequence* walk_;
+};
+const scenes::Sequence* Sessions::walk_ = nullptr;
+
+TEST_F(Sessions, AnUpdateIsAParseOfTheFramesThatAreThere) {
+    const SessionOptions options = quick();
+    Session session(walk_->intrinsics, {}, options);
+    EXPECT_EQ(session.scene(), nullptr);
+    // Some drifted, one is of another place.
+    for (std::size_t n = 0; n < 5; ++n)
+        EXPECT_EQ(session.add(frame(n), shifted(pose(n), n < 2 ? 0 : 0.3)), n);
+    session.add(frame(0), shifted(pose(0), 3));
+    session.update();
+    session.correct({{2, pose(2)}, {3, pose(3)}, {4, pose(4)}});
+    session.forget(5);
+    session.add(frame(5), pose(5));
+    const auto found = session.update();
+    EXPECT_EQ(found->frames, (std::vector<FrameId>{0, 1, 2, 3, 4, 6}));
+    expect_same(found->result->scene, parse(frames_view_of(*walk_), options.parse).scene);
+    EXPECT_EQ(session.scene(), found);
+}
+
+TEST_F(Sessions, ThingsKeepTheirIdsWhereverTheirFramesGo) {
+    Session session(walk_->intrinsics, {}, quick());
+    for (std::size_t n = 0; n < 6; ++n) session.add(frame(n), pose(n));
+    const auto before = session.update();
+    ASSERT_GT(before->things.size(), 3u);
+    std::map<FrameId, Mat4> poses;
+    for (std::size_t n = 0; n < 6; ++n) poses[n] = shifted(pose(n), 0.7);
+    session.correct(poses);
+    const auto after = session.update();
+    ASSERT_EQ(after->things.size(), before->things.size());
+    for (std::size_t n = 0; n < after->things.size(); ++n) {
+        EXPECT_EQ(after->things[n].id, before->things[n].id);
+        EXPECT_EQ(after->things[n].change, Change::none);
+    }
+    // Pixels show things by those ids.
+    const ThingLabels labels = session.label(frame(1), shifted(pose(1), 0.7));
+    ASSERT_EQ(labels.thing.size(), std::size_t{96} * 72);
+    EXPECT_GT(std::ranges::count(labels.thing, 0), 500);
+    for (const std::int64_t id : labels.thing)
+        EXPECT_TRUE(id == -1 || std::ranges::any_of(after->things, [&](const Thing& t) {
+                        return static_cast<std::int64_t>(t.id) == id;
+                    }));
+    // Nothing new: the same scene without changes.
+    EXPECT_EQ(session.update()->result, after->result);
+}
+
+TEST_F(Sessions, WhatIsNoFrameIsRefusedAndChangesNothing) {
+    Session session(walk_->intrinsics, {}, quick());
+    session.add(frame(0), pose(0));
+    const auto refused = [&](ErrorKind kind, const char* words, const auto& call) {
+        try {
+            call();
+            ADD_FAILURE() << words;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), kind) << error.what();
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+        }
+    };
+    const std::vector<std::uint16_t> dark(std::size_t{96} * 72, 0);
+    FrameView empty, small = frame(1);
+    empty.depth = {dark.data(), 96, 72};
+    small.depth = {dark.data(), 48, 72};
+    Mat4 skewed = pose(1);
+    skewed[0] = 3;
+    refused(ErrorKind::input, "no readings", [&] { session.add(empty, pose(1)); });
+    refused(ErrorKind::input, "once more", [&] { session.add(frame(0), pose(0)); });
+    refused(ErrorKind::input, "48 x 72", [&] { session.add(small, pose(1)); });
+    refused(ErrorKind::input, "camera_to_world", [&] { session.add(frame(1), skewed); });
+    refused(ErrorKind::input, "camera_to_world", [&] { session.correct({{0, skewed}}); });
+    refused(ErrorKind::usage, "no frame 9", [&] { session.correct({{9, pose(0)}}); });
+    refused(ErrorKind::usage, "no frame 9", [&] { session.forget(9); });
+    refused(ErrorKind::usage, "before update()", [&] { session.label(frame(0), pose(0)); });
+    EXPECT_EQ(session.frames(), std::vector<FrameId>{0});
+    session.forget(0);
+    EXPECT_EQ(session.frame_bytes(), 0u);
+    refused(ErrorKind::input, "no frames", [&] { session.update(); });
+    SessionOptions none = quick();
+    none.max_frame_bytes = 0;
+    refused(ErrorKind::usage, "max_frame_bytes", [&] { Session(walk_->intrinsics, {}, none); });
+}
+
+TEST_F(Sessions, KeepsToItsMemoryAndLeavesOutFramesThatOthersStandNextTo) {
+    SessionOptions options = quick();
+    Session all(walk_->intrinsics, {}, options);
+    for (std::size_t n = 0; n < 4; ++n) all.add(frame(n), pose(n));
+    options.max_frame_bytes = all.frame_bytes() + all.frame_bytes() / 8;
+    Session few(walk_->intrinsics, {}, options);
+    for (std::size_t n = 0; n < 3; ++n) few.add(frame(n), pose(n));
+    for (int n = 0; n < 20; ++n) few.add(frame(3), shifted(pose(3), 1e-3 * n));
+    EXPECT_LE(few.frame_bytes(), options.max_frame_bytes);
+    const std::vector<FrameId> left = few.frames();
+    ASSERT_GE(left.size(), 3u);
+    EXPECT_EQ(left[0], 0u);
+    EXPECT_EQ(left[1], 1u);
+    EXPECT_EQ(left.back(), 22u);
+}
+
+TEST_F(Sessions, FramesComeWhileOthersReadAndUpdate) {
+    Session session(walk_->intrinsics, {}, quick());
+    for (std::size_t n = 0; n < 4; ++n) session.add(frame(n), pose(n));
+    std::atomic<bool> done = false;
+    std::jthread reader([&] {
+        while (!done) {
+            const auto scene = session.scene();
+            EXPECT_TRUE(!scene || scene->things.size() >= scene->result->scene.objects.size());
+            std::this_thread::yield();
+        }
+    });
+    std::jthread updater([&] {
+        session.update();
+        session.update();
+        done = true;
+    });
+    for (std::size_t n = 4; n < 6; ++n) session.add(frame(n), pose(n));
+    updater.join();
+    EXPECT_GE(session.scene()->frames.size(), 4u);
+}
+
+}  // namespace
+}  // namespace topple::test
