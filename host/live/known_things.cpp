@@ -15,6 +15,10 @@ namespace {
 constexpr std::size_t none = ~std::size_t{0};
 // Of the pixels that show either of two, those that must show both.
 constexpr double least_shared = 0.1;
+// Of the pixels that show what came or has gone, those that must say so; of what moved aside.
+constexpr double most_of_it = 0.5, some_of_it = 0.1;
+// Centres are found to so much.
+constexpr double aside_m = 0.05;
 // How much the size, along each axis from the shortest, and the weight of what moved may differ.
 constexpr double alike_size = 0.15, alike_m = 0.02, alike_mass = 0.3;
 
@@ -24,9 +28,8 @@ struct Match {
 };
 
 // Best first, then by number, so that the order is the same everywhere; each once.
-template <class Use>
 void use_best(std::vector<Match> matches, std::vector<std::size_t>& before_of,
-              std::vector<bool>& taken, const Use& use) {
+              std::vector<bool>& taken) {
     std::ranges::sort(matches, [](const Match& a, const Match& b) {
         return std::tuple(-a.alike, a.before, a.now) < std::tuple(-b.alike, b.before, b.now);
     });
@@ -34,18 +37,19 @@ void use_best(std::vector<Match> matches, std::vector<std::size_t>& before_of,
         if (taken[match.before] || before_of[match.now] != none) continue;
         before_of[match.now] = match.before;
         taken[match.before] = true;
-        use(match);
     }
 }
 
-std::vector<Match> by_pixels(const ShownObjects& before, const ShownObjects& now) {
+using Showed = std::map<FrameId, std::vector<std::int32_t>>;
+
+std::vector<Match> by_pixels(const Showed& before, const ShownObjects& now) {
     std::map<std::pair<std::int32_t, std::int32_t>, double> both;
     std::map<std::int32_t, double> of_before, of_now;
     for (const auto& [frame, shows] : now) {
         const auto earlier = before.find(frame);
         if (earlier == before.end()) continue;
-        for (std::size_t n = 0; n < shows.size(); ++n) {
-            const std::int32_t a = earlier->second[n], b = shows[n];
+        for (std::size_t n = 0; n < shows.object.size(); ++n) {
+            const std::int32_t a = earlier->second[n], b = shows.object[n];
             if (a >= 0) ++of_before[a];
             if (b >= 0) ++of_now[b];
             if (a >= 0 && b >= 0) ++both[{a, b}];
@@ -59,6 +63,26 @@ std::vector<Match> by_pixels(const ShownObjects& before, const ShownObjects& now
             out.push_back({shared, static_cast<std::size_t>(a), static_cast<std::size_t>(b)});
     }
     return out;
+}
+
+// Of the pixels that show each object, the share for which `is` holds. shows(frame): by pixel.
+template <class Shows, class Is>
+std::vector<double> shares(const ShownObjects& shown, std::size_t objects, const Shows& shows,
+                           const Is& is) {
+    std::vector<double> all(objects), some(objects);
+    for (const auto& [frame, pixels] : shown) {
+        const std::vector<std::int32_t>* const object = shows(frame, pixels);
+        const std::vector<bool>& holds = is(pixels);
+        if (!object || holds.empty()) continue;
+        for (std::size_t n = 0; n < object->size(); ++n) {
+            const std::int32_t o = (*object)[n];
+            if (o < 0) continue;
+            ++all[static_cast<std::size_t>(o)];
+            some[static_cast<std::size_t>(o)] += holds[n];
+        }
+    }
+    for (std::size_t o = 0; o < objects; ++o) some[o] /= std::max(1.0, all[o]);
+    return some;
 }
 
 bool alike(const Vec3& size, const Vec3& other) {
@@ -78,62 +102,81 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
     std::vector<bool> taken(before_.size(), false);
     std::vector<Thing> out(count);
     // The building is the building, however little of it was seen.
-    for (std::size_t n = 0; n < count; ++n) {
-        out[n].object = static_cast<std::int32_t>(n);
-        if (!scene.objects[n].grounded) continue;
-        const auto building = std::ranges::find(before_, ThingId{0}, &Before::id);
-        if (building == before_.end()) continue;
-        before_of[n] = static_cast<std::size_t>(building - before_.begin());
-        taken[before_of[n]] = true;
-        break;
+    const auto building = std::ranges::find(before_, ThingId{0}, &Before::id);
+    const auto ground = std::ranges::find(scene.objects, true, &Object::grounded);
+    if (building != before_.end() && ground != scene.objects.end()) {
+        const auto was = static_cast<std::size_t>(building - before_.begin());
+        before_of[static_cast<std::size_t>(ground - scene.objects.begin())] = was;
+        taken[was] = true;
     }
-    use_best(by_pixels(shown_before_, shown), before_of, taken, [](const Match&) {});
+    use_best(by_pixels(showed_, shown), before_of, taken);
+    const std::vector<double> gone = shares(
+        shown, before_.size(),
+        [&](FrameId frame, const Shown&) {
+            const auto at = showed_.find(frame);
+            return at == showed_.end() ? nullptr : &at->second;
+        },
+        [](const Shown& pixels) -> const std::vector<bool>& { return pixels.gone; });
+    const std::vector<double> came = shares(
+        shown, count, [](FrameId, const Shown& pixels) { return &pixels.object; },
+        [](const Shown& pixels) -> const std::vector<bool>& { return pixels.came; });
+
+    const auto moved_m = [&](std::size_t b, std::size_t n) {
+        return length(minus(scene.objects[n].box_middle_m, before_[b].middle_m));
+    };
+    const auto like = [&](std::size_t b, std::size_t n) {
+        const Object& object = scene.objects[n];
+        return alike(object.size_m, before_[b].size_m) &&
+               std::abs(object.mass_kg - before_[b].mass_kg) <=
+                   alike_mass * std::max(object.mass_kg, before_[b].mass_kg);
+    };
     std::vector<Match> elsewhere;
-    for (std::size_t b = 0; b < before_.size(); ++b) {
-        for (std::size_t n = 0; n < count; ++n) {
-            const Object& object = scene.objects[n];
-            if (taken[b] || before_of[n] != none || object.grounded) continue;
-            const double most_kg = std::max(object.mass_kg, before_[b].mass_kg);
-            if (!alike(object.size_m, before_[b].size_m) ||
-                std::abs(object.mass_kg - before_[b].mass_kg) > alike_mass * most_kg)
-                continue;
-            elsewhere.push_back({-length(minus(object.box_middle_m, before_[b].middle_m)), b, n});
-        }
-    }
-    use_best(std::move(elsewhere), before_of, taken, [&](const Match& match) {
-        out[match.now].change = Change::moved;
-        out[match.now].moved_m = -match.alike;
-    });
+    for (std::size_t b = 0; b < before_.size(); ++b)
+        for (std::size_t n = 0; n < count; ++n)
+            if (!taken[b] && before_of[n] == none && gone[b] >= most_of_it &&
+                came[n] >= most_of_it && like(b, n))
+                elsewhere.push_back({-moved_m(b, n), b, n});
+    std::vector<bool> was_taken = taken;
+    use_best(std::move(elsewhere), before_of, taken);
 
     std::vector<Before> now(count);
-    bool building = std::ranges::any_of(before_, [](const Before& b) { return b.id == 0; });
+    bool named = building != before_.end();  // a building, with the number 0
     for (std::size_t n = 0; n < count; ++n) {
         const Object& object = scene.objects[n];
-        if (before_of[n] != none) {
-            out[n].id = before_[before_of[n]].id;
+        Thing& thing = out[n];
+        thing.object = static_cast<std::int32_t>(n);
+        const std::size_t b = before_of[n];
+        if (b == none) {
+            thing.id = object.grounded && !std::exchange(named, true) ? 0 : next_++;
+            thing.change = came[n] >= most_of_it ? Change::came : Change::found;
         } else {
-            const bool first =
-                object.grounded && !std::exchange(building, building || object.grounded);
-            out[n].id = first ? 0 : next_++;
-            out[n].change = Change::appeared;
+            thing.id = before_[b].id;
+            const bool aside = gone[b] >= some_of_it && moved_m(b, n) >= aside_m && like(b, n);
+            if (!was_taken[b] || (thing.id != 0 && aside)) {
+                thing.change = Change::moved;
+                thing.moved_m = moved_m(b, n);
+            }
         }
-        now[n] = {out[n].id, object.box_middle_m,     object.size_m, object.mass_kg,
-                  {},        object.unsafety_category};
+        now[n] = {thing.id, object.box_middle_m,     object.size_m, object.mass_kg,
+                  {},       object.unsafety_category};
     }
     for (const Support& support : scene.supports)
         now[static_cast<std::size_t>(support.supported)].stands_on.push_back(
             out[static_cast<std::size_t>(support.supporter)].id);
     for (std::size_t n = 0; n < count; ++n) {
         std::ranges::sort(now[n].stands_on);
-        if (out[n].change != Change::none || before_of[n] == none) continue;
+        if (out[n].change != Change::none) continue;
         const Before& was = before_[before_of[n]];
         if (was.category != now[n].category || was.stands_on != now[n].stands_on)
             out[n].change = Change::changed;
     }
     for (std::size_t b = 0; b < before_.size(); ++b)
-        if (!taken[b]) out.push_back({.id = before_[b].id, .change = Change::vanished});
+        if (!taken[b])
+            out.push_back({.id = before_[b].id,
+                           .change = gone[b] >= most_of_it ? Change::gone : Change::lost});
     before_ = std::move(now);
-    shown_before_ = shown;
+    showed_.clear();
+    for (const auto& [frame, pixels] : shown) showed_[frame] = pixels.object;
     return out;
 }
 

@@ -12,12 +12,18 @@
 
 namespace topple::live {
 
-// The objects of a scene that pixels of some frames show, frame by frame; -1: none. Pixels of one
-// frame show the same things whatever was made of its pose and of the others since.
-using ShownObjects = std::map<FrameId, std::vector<std::int32_t>>;
+// What the pixels of a frame show of a scene: its objects, -1: none; whether later frames see
+// through what is there, so that it has gone since; and whether frames of before saw through it, so
+// that it has come.
+struct Shown {
+    std::vector<std::int32_t> object;
+    std::vector<bool> gone, came;
+};
+// By frame: the same pixels whatever was made of its pose, and of the others, since.
+using ShownObjects = std::map<FrameId, Shown>;
 
 // Which objects of one scene are which of the one before: those that most of the same pixels show;
-// of what then is left, those of the same size and weight, which have moved.
+// of what then is left, what came and is like what has gone.
 class KnownThings {
   public:
     // What the objects are, and what of those before has vanished.
@@ -31,8 +37,8 @@ class KnownThings {
         std::vector<ThingId> stands_on;  // ascending
         std::string category;
     };
-    std::vector<Before> before_;  // by object of the scene before
-    ShownObjects shown_before_;
+    std::vector<Before> before_;                           // by object of the scene before
+    std::map<FrameId, std::vector<std::int32_t>> showed_;  // before
     ThingId next_ = 1;
 };
 

@@ -9,8 +9,11 @@
 #include <utility>
 
 #include "core/checksum.h"
+#include "core/random.h"
+#include "live/coarse_frame.h"
 #include "live/kept_frame.h"
 #include "live/known_things.h"
+#include "live/seen_through.h"
 #include "points/caller_frames.h"
 #include "points/formats/rigid_pose.h"
 #include "topple/error.h"
@@ -19,9 +22,14 @@
 namespace topple {
 namespace {
 
-// Things are told by this many frames at most, each with so many pixels in a row.
-constexpr std::size_t most_telling = 48;
-constexpr std::uint32_t telling_width = 160;
+// Things are told by this many frames at most, the same ones as long as these are not too many.
+constexpr std::size_t most_telling = 96;
+
+// One that has nothing to do with when it was taken: of a camera that swings to and fro, each
+// second frame looks the same way.
+std::uint64_t number_of(FrameId frame) {
+    return Random(frame).bits();
+}
 
 std::string name_of(FrameId frame) {
     return "frame " + std::to_string(frame);
@@ -47,29 +55,6 @@ FrameView view_of(const DepthFrame& frame, const Intrinsics& k) {
         out.colour = {reinterpret_cast<const Rgb*>(frame.rgb.data()), k.width, k.height};
     return out;
 }
-
-// Each step-th pixel of an image, and of its rows.
-struct Coarse {
-    explicit Coarse(const Intrinsics& k)
-        : step(std::max(1u, k.width / telling_width)), intrinsics(k) {
-        const double s = step;
-        intrinsics.width = k.width / step;
-        intrinsics.height = k.height / step;
-        intrinsics.fx /= s;
-        intrinsics.fy /= s;
-        intrinsics.cx /= s;
-        intrinsics.cy /= s;
-    }
-    DepthFrame of(const DepthFrame& frame, std::uint32_t width) const {
-        DepthFrame out;
-        for (std::size_t v = 0; v < intrinsics.height; ++v)
-            for (std::size_t u = 0; u < intrinsics.width; ++u)
-                out.depth.push_back(frame.depth[v * step * width + u * step]);
-        return out;
-    }
-    std::uint32_t step;
-    Intrinsics intrinsics;
-};
 
 // How far apart two cameras are: 1 for 5 cm, or for 5 degrees.
 double apart(const Mat4& a, const Mat4& b) {
@@ -154,13 +139,15 @@ class Session::State {
             throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
         auto found = std::make_shared<LiveScene>();
         for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
-        if (const auto last = scene(); last && changes == parsed_changes_) {
-            *found = *last;
+        if (const auto known = scene(); known && changes == parsed_changes_) {
+            *found = *known;
             std::erase_if(found->things, [](const Thing& t) { return t.object < 0; });
             for (Thing& thing : found->things) thing = {.id = thing.id, .object = thing.object};
             publish(found);
             return found;
         }
+        const auto last = scene();
+        const Passed passed = passed_through(frames, last ? last->frames.back() + 1 : 0);
         FramesView view;
         view.intrinsics = k_;
         view.source = "session";
@@ -168,11 +155,12 @@ class Session::State {
         DepthFrame current;
         view.image = [&](std::size_t n) {
             current = frames.at(found->frames[n]).frame->frame();
+            if (options_.forget_gone) live::Coarse(k_).leave_out(passed.gone[n], current);
             return view_of(current, k_);
         };
         found->result = std::make_shared<const ParseResult>(parse(view, options_.parse));
         auto labeller = std::make_shared<const FrameLabeller>(*found->result);
-        found->things = known_.name(found->result->scene, shown(frames, *labeller));
+        found->things = known_.name(found->result->scene, shown(frames, passed, *labeller));
         parsed_changes_ = changes;
         publish(found, std::move(labeller));
         return found;
@@ -236,24 +224,56 @@ class Session::State {
         const std::lock_guard lock(frames_mutex_);
         return {frames_, changes_};
     }
-    // What some of the frames show, the same ones as long as they are there and not too many.
-    live::ShownObjects shown(const Frames& frames, const FrameLabeller& labeller) const {
-        FrameId every = 1;
+    // The frames as they tell of things, and what others see through of each: later ones; and of
+    // those from `first_new` on, earlier ones.
+    struct Passed {
+        std::vector<DepthFrame> seen;
+        std::vector<live::Gone> gone, came;
+    };
+    Passed passed_through(const Frames& frames, FrameId first_new) const {
+        const live::Coarse coarse(k_);
+        Passed out;
+        std::size_t old = 0;
+        for (const auto& [frame, kept] : frames) {
+            old += frame < first_new;
+            out.seen.push_back(coarse.of(kept.frame->frame()));
+            out.seen.back().camera_to_world = kept.pose;
+        }
+        ThreadPool threads(0);
+        const std::size_t all = out.seen.size();
+        out.gone = live::seen_through(
+            coarse.intrinsics(), out.seen, [&](std::size_t n) { return std::pair(n + 1, all); },
+            threads);
+        out.came = live::seen_through(
+            coarse.intrinsics(), out.seen,
+            [&](std::size_t n) { return std::pair(std::size_t{0}, n < old ? 0 : old); }, threads);
+        return out;
+    }
+    // What some of the frames show.
+    live::ShownObjects shown(const Frames& frames, const Passed& passed,
+                             const FrameLabeller& labeller) const {
+        std::uint64_t every = 1;
         const auto telling = [&] {
             return static_cast<std::size_t>(std::ranges::count_if(
-                frames, [&](const auto& kept) { return kept.first % every == 0; }));
+                frames, [&](const auto& kept) { return number_of(kept.first) % every == 0; }));
         };
         while (telling() > most_telling) every *= 2;
-        const Coarse coarse(k_);
+        const Intrinsics k = live::Coarse(k_).intrinsics();
+        const auto flags = [&](const live::Gone& pixels) {
+            std::vector<bool> out(std::size_t{k.width} * k.height);
+            for (const live::GonePixel& p : pixels) out[std::size_t{p.v} * k.width + p.u] = true;
+            return out;
+        };
         live::ShownObjects out;
-        for (const auto& [frame, kept] : frames) {
-            if (frame % every != 0) continue;
-            const DepthFrame seen = coarse.of(kept.frame->frame(), k_.width);
+        std::size_t n = 0;
+        for (auto at = frames.begin(); at != frames.end(); ++at, ++n) {
+            if (number_of(at->first) % every != 0) continue;
             FramesView view;
-            view.intrinsics = coarse.intrinsics;
-            view.camera_to_world = {kept.pose};
-            view.images = {view_of(seen, coarse.intrinsics)};
-            out[frame] = labeller.label(view, 0).object;
+            view.intrinsics = k;
+            view.camera_to_world = {at->second.pose};
+            view.images = {view_of(passed.seen[n], k)};
+            out[at->first] = {labeller.label(view, 0).object, flags(passed.gone[n]),
+                              flags(passed.came[n])};
         }
         return out;
     }

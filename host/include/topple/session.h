@@ -22,15 +22,17 @@ using ThingId = std::uint64_t;
 
 enum class Change : std::uint8_t {
     none,
-    appeared,  // it was not there, or not seen, in the update before
-    moved,     // what was elsewhere, as its size and weight tell
-    changed,   // it stands on something else, or its category of risk is another
-    vanished,  // it was there in the update before
+    found,    // it was not seen before, or not told apart from others
+    came,     // its place was seen to be free before
+    moved,    // what had its size and weight has gone elsewhere, or it stands a little aside
+    changed,  // it stands on something else, or its category of risk is another
+    lost,     // it is not told apart from others any more
+    gone,     // its place was seen to be free since
 };
 
 struct Thing {
     ThingId id = 0;            // 0: the building
-    std::int32_t object = -1;  // its place in Scene::objects; -1: it vanished
+    std::int32_t object = -1;  // its place in Scene::objects; -1: it is lost or gone
     Change change = Change::none;
     double moved_m = 0;  // how far, where it moved
 };
@@ -38,7 +40,7 @@ struct Thing {
 // What an update has found.
 struct LiveScene {
     std::shared_ptr<const ParseResult> result;
-    std::vector<Thing> things;    // by Scene::objects, then what vanished
+    std::vector<Thing> things;    // by Scene::objects, then what is lost or gone
     std::vector<FrameId> frames;  // that it was parsed from
 };
 
@@ -50,6 +52,9 @@ struct ThingLabels {
 
 struct SessionOptions {
     ParseOptions parse;
+    // Whether readings are left out at places that most of the latest looks see through: what was
+    // there was taken away, or walked by.
+    bool forget_gone = true;
     // That kept frames take, compressed: 640 x 480 pixels about 0.3 MB. Where that is not enough
     // the frame goes whose camera has a neighbour in time next to it.
     std::uint64_t max_frame_bytes = 2'000'000'000;
@@ -80,9 +85,9 @@ class Session {
     std::uint64_t frame_bytes() const;    // that they take
 
     // Parses the frames that are there now. Its result is bit for bit parse()'s of the same frames
-    // and poses, whatever was added, corrected or forgotten before. One at a time; where nothing
-    // has changed since, it is the one before, with no changes. Throws what parse() does; the scene
-    // before stays then.
+    // and poses, but for what has gone, whatever was added, corrected or forgotten before. One at a
+    // time; where nothing has changed since, it is the one before, with no changes. Throws what
+    // parse() does; the scene before stays then.
     std::shared_ptr<const LiveScene> update();
     // Of the last update; null before the first.
     std::shared_ptr<const LiveScene> scene() const;
