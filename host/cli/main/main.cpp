@@ -22,6 +22,8 @@ int main(int argc, char** argv) {
         {"verify", "Run what a parse has found in MuJoCo, and say what stays where it is",
          add_verify},
         {"view", "Show what a parse has found in the browser", add_view},
+        {"live", "Follow a scan that is still being made: what is there, came and has gone",
+         add_live},
         {"devices", "List every device of every backend, or why one is missing", add_devices},
         {"generate", generate_purpose, lab},
         {"evaluate", evaluate_purpose, lab},

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/option_values.h"
+#include "cli/print.h"
+#include "io/output_folder.h"
+#include "io/text.h"
+#include "live/growing_folder.h"
+#include "topple/device.h"
+#include "topple/session.h"
+
+namespace topple::cli {
+namespace {
+
+struct LiveArguments {
+    std::string folder, out, backend = "auto", up;
+    SessionOptions options;
+    std::optional<double> idle_s;
+    unsigned threads = 0;
+    bool quiet = false;
+};
+
+using Clock = std::chrono::steady_clock;
+double since_s(Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+std::string text_of(const Thing& thing, const Scene& scene) {
+    std::string out = "thing " + std::to_string(thing.id);
+    if (thing.object < 0) return out;
+    const Object& object = scene.objects[static_cast<std::size_t>(thing.object)];
+    if (!object.name.empty()) out += " (" + object.name + ")";
+    if (!object.grounded && object.seen_enough && object.unsafety_category != "none")
+        out += ", " + object.unsafety_category;
+    return out;
+}
+
+const char* text_of(Change change) {
+    switch (change) {
+        case Change::came:
+            return "came";
+        case Change::moved:
+            return "moved";
+        case Change::gone:
+            return "gone";
+        default:
+            return nullptr;  // of what is known of the room, not of the room
+    }
+}
+
+void print_changes(const LiveScene& found, double took_s) {
+    const Scene& scene = found.result->scene;
+    std::size_t things = 0;
+    for (const Object& object : scene.objects) things += !object.grounded;
+    print("%s, %s; %.1f s\n", io::counted(found.frames.size(), "frame").c_str(),
+          io::counted(things, "thing").c_str(), took_s);
+    for (const Thing& thing : found.things) {
+        const char* const change = text_of(thing.change);
+        if (!change) continue;
+        print("  %s: %s", change, text_of(thing, scene).c_str());
+        if (thing.change == Change::moved) print(", by %.2f m", thing.moved_m);
+        print("\n");
+    }
+    std::fflush(stdout);
+}
+
+int run(LiveArguments& a) {
+    constexpr auto pause = std::chrono::milliseconds(100);
+    constexpr std::size_t most_at_once = 500;
+    constexpr double patience_s = 5;  // until it is said what is waited for
+    if (!a.up.empty()) a.options.parse.up = parse_up("--up", a.up);
+    std::error_code error;
+    if (!std::filesystem::is_directory(a.folder, error))
+        throw Error(ErrorKind::input, a.folder + ": No such folder");
+    catch_interrupts();
+    io::check_not_replaced(a.folder, a.out);
+    a.options.parse.device = device::open_device(a.backend, a.threads);
+    a.options.parse.cancelled = [] { return interrupted() != 0; };
+    OutputOptions output;
+    output.threads = a.threads;
+    output.cancelled = a.options.parse.cancelled;
+    output.command = {"topple", "parse", a.folder, "-o", a.out};
+
+    live::GrowingFolder folder(a.folder);
+    std::unique_ptr<Session> session;
+    auto last = Clock::now();
+    std::string said;
+    const auto told = [&](const char* line) {
+        if (!a.quiet) print_to(stderr, "%s; it is left out\n", line);
+    };
+    try {
+        while (interrupted() == 0) {
+            if (!session)
+                if (const auto intrinsics = folder.intrinsics())
+                    session = std::make_unique<Session>(*intrinsics, std::nullopt, a.options);
+            if (session && folder.read(*session, most_at_once, told)) {
+                const auto start = Clock::now();
+                const auto found = session->update();
+                write_outputs(*found->result, a.out, output);
+                if (!a.quiet) print_changes(*found, since_s(start));
+                last = Clock::now();
+                continue;
+            }
+            if (a.idle_s && since_s(last) >= *a.idle_s) break;
+            if (!a.quiet && since_s(last) > patience_s && !folder.waits_for().empty() &&
+                folder.waits_for() != said) {
+                said = folder.waits_for();
+                print_to(stderr, "waiting: %s\n", said.c_str());
+            }
+            std::this_thread::sleep_for(pause);
+        }
+    } catch (const Error&) {
+        if (interrupted() == 0) throw;
+    }
+    if (interrupted() != 0) return interrupted_exit();
+    if (!session || !session->scene())
+        throw Error(ErrorKind::input,
+                    folder.waits_for().empty() ? a.folder + ": no frame came" : folder.waits_for());
+    return 0;
+}
+
+}  // namespace
+
+Command add_live(CLI::App& app) {
+    auto a = std::make_shared<LiveArguments>();
+    app.add_option(
+           "FOLDER", a->folder,
+           "Sequence folder (depth/*.png, intrinsics.json, a trajectory) into which another\n"
+           "program writes frames, and corrects poses")
+        ->required();
+    app.add_option("-o,--output", a->out, "Folder for the results, written anew at each update")
+        ->required();
+    app.add_option("--backend", a->backend,
+                   "auto (a real GPU if there is one, else native), native, opencl, vulkan")
+        ->capture_default_str();
+    app.add_option("--voxel", a->options.parse.voxel_m,
+                   "Edge of a solid voxel in metres (default: found from the frames)")
+        ->check(number_above_0);
+    app.add_option("--up", a->up,
+                   "Up in the trajectory's frame, X,Y,Z, as from an IMU (default: found)");
+    app.add_flag_function(
+        "--keep-gone", [a](std::int64_t) { a->options.forget_gone = false; },
+        "Count readings, too, at places that later frames see through");
+    app.add_option("--idle", a->idle_s,
+                   "Seconds without anything new after which it ends (default: at Ctrl-C)")
+        ->check(number_above_0);
+    app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
+    app.add_flag("--quiet", a->quiet, "Print errors only");
+    return [a] { return run(*a); };
+}
+
+}  // namespace topple::cli
