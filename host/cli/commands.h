@@ -45,6 +45,7 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
 Command add_devices(CLI::App& app);
 Command add_estimate(CLI::App& app);
 Command add_landscape(CLI::App& app);
+Command add_ask(CLI::App& app);
 Command add_export(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_view(CLI::App& app);

@@ -97,6 +97,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_result(module);
     bind_parse(module);
     bind_places(module);
+    bind_ask(module);
     bind_labels(module);
     bind_export(module);
     bind_kernels(module);

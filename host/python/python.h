@@ -42,6 +42,7 @@ struct Parsed {
     ParseResult result;
 };
 
+void bind_ask(py::module_& module);
 void bind_export(py::module_& module);
 void bind_kernels(py::module_& module);
 void bind_labels(py::module_& module);

@@ -2,7 +2,7 @@
 """Files that topple wrote itself, changed by who knows how they are made: binary ones get a right checksum.
 
 cases(program, work, rng, each) yields (name, make) as inputs.cases() does, for what reads such files: export, verify,
-landscape, parse with --cache, parses that go on in blocks, and `topple.load` where Python has it ('load').
+landscape, ask, parse with --cache, parses that go on in blocks, and `topple.load` where Python has it ('load').
 """
 import ctypes
 import json
@@ -142,13 +142,15 @@ def cases(program, good, rng, each):
         changed = [text.encode('utf-8', 'replace') for text in inputs.json_variants(json.loads(data), rng, 25 * each)]
         changed += [other for _, other in inputs.mutations(data, rng, each)]
         for other in changed:
-            for words in ((exports, ('verify', '.', '--seconds', '0.1')) if name == 'scene.json' else ()) + (
+            for words in ((exports, ('verify', '.', '--seconds', '0.1'), ('ask', '.', '--without', '1')) if name == 'scene.json' else ()) + (
                     ('landscape', '.', '--object', '1'), ('load', '.')):
                 if rng.random() < 0.4:
                     yield 'own %s %s' % (words[0], name), result_case(name, other, words)
     for name in ('points.ply', 'solid.ply'):
         for _, other in inputs.mutations((good / name).read_bytes(), rng, 4 * each):
             yield 'own load ' + name, result_case(name, other, ('load', '.'))
+            if name == 'solid.ply':
+                yield 'own ask ' + name, result_case(name, other, ('ask', '.', '--without', '1'))
             if name == 'points.ply' and rng.random() < 0.3:
                 yield 'own export ' + name, result_case(name, other, exports)
     if function is None:

@@ -5,6 +5,7 @@
 #include "physics/landscape.h"
 #include "result/landscapes_json.h"
 #include "result/scene_json.h"
+#include "topple/ask.h"
 
 namespace topple::parses {
 namespace {
@@ -350,6 +351,21 @@ void check_landscape(const Object& o, const Vec3& up) {
                    std::to_string(o.barrier_J));
 }
 
+// What is loose can be taken away, once each, and what falls without one is loose.
+void check_answers(const Scene& scene) {
+    std::vector<int> times(scene.objects.size(), 0);
+    for (const auto& step : removal_steps(scene))
+        for (const std::int32_t id : step) ++times.at(id);
+    for (const Object& o : scene.objects)
+        expect(times[o.id] == (o.grounded ? 0 : 1), "an object is not taken away once");
+    const auto loose = std::ranges::find(scene.objects, false, &Object::grounded);
+    if (loose == scene.objects.end()) return;
+    for (const Unheld& one : falls_without(scene, {loose->id}).falls) {
+        expect(one.object != loose->id && times.at(one.object) == 1, "what falls is not loose");
+        expect(!one.reason.empty(), "what falls has no reason");
+    }
+}
+
 void check(const Scene& scene) {
     check_head(scene);
     for (const std::uint8_t state : scene.solid.state) expect(state <= 1, "no state of a voxel");
@@ -362,6 +378,7 @@ void check(const Scene& scene) {
         if (!o.grounded) check_landscape(o, scene.up);
     }
     check_relations(scene);
+    check_answers(scene);
     for (const auto& [name, field] : scene.fields) {
         for (const auto* values : {&field.vx, &field.vy, &field.vz, &field.density})
             for (const float v : *values) expect(std::isfinite(v), "the field of " + name);

@@ -277,6 +277,35 @@ def test_what_can_be_taken_away_first(result):
             result.removal_order(wrong)
 
 
+def test_what_falls_without_an_object(result, tmp_path):
+    below, above = sorted((o.id for o in result.objects if not o.grounded), key=lambda n: result.objects[n].support_height_m)
+    result.write(tmp_path / 'out')
+    for asked in (result, topple.load(tmp_path / 'out')):
+        falls, unsure = asked.falls_without(below)
+        assert [(f.object, f.lost, f.left) for f in falls] == [(above, [below], [])] and np.isnan(falls[0].beyond_m) and unsure == []
+        assert falls[0].reason.startswith(f'Object {above} rests on object {below}, and on nothing else') and 0.2 < falls[0].probability <= 1
+        assert asked.falls_without(asked.objects[above]) == ([], []) == asked.falls_without([below, asked.objects[above]])
+        assert asked.removal_steps() == [[above], [below]] == asked.removal_steps(below) and asked.removal_steps(asked.objects[above]) == [[above]]
+        floor, = asked.held_by(below)
+        assert floor.building and asked.objects[floor.object].grounded and floor.from_below and floor.area_m2 > 0.1
+        held, = asked.held_by(asked.objects[above])
+        assert (held.object, held.building, held.from_below) == (below, False, True)
+
+
+@pytest.mark.parametrize('item, words', [
+    (99, 'object: expected one of the result'), (-1, 'object: expected one of the result'), ('crate', 'object: expected one of the result'),
+    (True, 'object: expected one of the result'), (0, 'object 0: it is the building, or fixed to it')])
+def test_what_is_not_there_holds_nothing(result, item, words):
+    for ask in (result.falls_without, result.removal_steps, result.held_by):
+        with raises('usage', words):
+            ask(item)
+    with raises('usage', 'expected an object, or some'):
+        result.falls_without([])
+    for ask in ('falls_without', 'held_by', 'removal_steps'):
+        with raises('usage', f'{ask}: this result was pickled'):
+            getattr(pickle.loads(pickle.dumps(result)), ask)(1)
+
+
 def test_a_folder_can_be_loaded(ply, coloured_sequence, points, tmp_path):
     for result, folder in ((ply, tmp_path / 'cloud'), (coloured_sequence, tmp_path / 'frames')):
         result.write(folder)

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
         {"estimate", "Say what memory, disk and time a parse would take", add_estimate},
         {"landscape", "Draw the energy landscapes of an object that a parse has found",
          add_landscape},
+        {"ask", "Say what falls without an object, what has to go first, what holds it", add_ask},
         {"export", "Make a scene for simulators of what a parse has found", add_export},
         {"verify", "Run what a parse has found in MuJoCo, and say what stays where it is",
          add_verify},

@@ -20,8 +20,9 @@ from typing import NamedTuple
 from . import _interpreter  # before what it keeps out of other interpreters
 import numpy as np
 
-from . import _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, kernels, plot, stages
+from . import _ask, _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, kernels, plot, stages
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
+from ._ask import FallsWithout, Holder, Unheld
 from ._device import open_device
 from ._frames import Frames as _Frames
 from ._options import named as _named, option as _option
@@ -31,8 +32,8 @@ from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, Di
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
-           'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
+__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Holder', 'Landscape', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
+           'Support', 'Unheld', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()
 for _kind in _snapshot.ITEMS:  # of a live result: a plain item that stands alone comes back
@@ -143,6 +144,24 @@ class Result:
         """In which order objects can be taken away one by one, so that nothing loses what carries it: a RemovalOrder. A support counts
         from min_probability on, 0 to 1 (Support.probability): with 0 all do, which is the safe side."""
         return _removal.order(self, min_probability)
+
+    def falls_without(self, items):
+        """What falls if objects are taken away, one or a list of them, each an Object or its id, all at once: a FallsWithout. What loses a supporter falls if none is
+        left, or if its centre of mass then lies outside of what it stands on; then what rested on it. What hangs on the building stays. It goes
+        by supports, each as likely as its probability, and by the solid voxels where things stand on one another. Raises Error of kind "usage"
+        for the building and what is fixed to it, and for a result that was pickled."""
+        return _ask.falls_without(self, self._whole('falls_without'), items)
+
+    def removal_steps(self, before=None):
+        """An order in which everything but the building can be taken away, so that nothing is taken before what it carries: a list of steps, each
+        the ids of one object, or of a ring of objects that carry one another and have to go together. With `before`, an Object or its id, what
+        has to go so that it can be taken and nothing falls; the last step is that object. Raises Error as falls_without()."""
+        return _ask.removal_steps(self, self._whole('removal_steps'), before)
+
+    def held_by(self, item):
+        """What holds an object, an Object or its id: a list of Holder, the likeliest first. Empty: the parse has found nothing that does, and
+        rests_by says how it is taken to stand. Raises Error as falls_without()."""
+        return _ask.held_by(self, self._whole('held_by'), item)
 
     def _repr_html_(self):
         return _tables.page(self)

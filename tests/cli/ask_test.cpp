@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+// Questions about what holds what, of the folder of a parse.
+namespace topple::test {
+namespace {
+
+using Ask = Program;
+using nlohmann::json;
+
+TEST_F(Ask, refuses_what_is_no_question) {
+    fails(2, "ask", {"OUT"});
+    fails(1, "ask nowhere --order", {"nowhere"});
+    put("other/notes.txt", "");
+    fails(1, "ask other --order", {"other: holds no output of topple"});
+    put("mine/scene.json", "{}");
+    fails(1, "ask mine --order", {"scene.json"});
+    put_plane("plane.xyz");
+    succeeds("parse plane.xyz -o out --quiet");
+    fails(2, "ask out", {"--without, --order, --before or --holds"});
+    fails(2, "ask out --order --holds 1", {"expected one question"});
+    for (const std::string option : {"--without", "--before", "--holds"}) {
+        fails(2, "ask out " + option + " 0", {"object 0", "the building"});
+        fails(2, "ask out " + option + " 99", {"object 99: the scene has objects 0 to 0"});
+        for (const char* wrong : {"-1", "x", "1.5", "99999999999"})
+            fails(2, "ask out " + option + " " + wrong, {option + " " + wrong, "number"});
+        expect_failure(2, {"ask", "out", option, ""}, {option, "empty"});
+    }
+    fails(2, "ask out --without 1,", {"--without"});
+    EXPECT_EQ(succeeds("ask out --order").out, "There is nothing that can be taken away.\n");
+    EXPECT_EQ(json::parse(succeeds("ask out --order --json").out).at("steps"), json::array());
+}
+
+TEST_F(Ask, answers_in_words_and_as_json) {
+    succeeds("generate room --seed 2 --frames 10");
+    succeeds("parse room -o out --voxel 0.04 --disturbance wind --backend native --quiet");
+    std::ifstream file(in("out/scene.json"));
+    const json scene = json::parse(file);
+    const auto& objects = scene.at("objects");
+
+    // All that is loose, once, and nothing before what it carries.
+    std::map<int, std::size_t> step_of;
+    const json order = json::parse(succeeds("ask out --order --json").out);
+    EXPECT_EQ(order.at("schema"), "topple.ask/1");
+    const auto& steps = order.at("steps");
+    for (std::size_t n = 0; n < steps.size(); ++n)
+        for (const int id : steps[n]) EXPECT_TRUE(step_of.emplace(id, n).second) << id;
+    std::size_t loose = 0;
+    for (const auto& o : objects) loose += o.at("grounded") ? 0 : 1;
+    EXPECT_EQ(step_of.size(), loose);
+    EXPECT_GT(loose, 3u);
+    std::set<int> carriers;
+    for (const auto& s : scene.at("supports")) {
+        const int a = s.at("supporter"), b = s.at("supported");
+        if (objects[a].at("grounded")) continue;
+        EXPECT_LE(step_of.at(b), step_of.at(a));
+        carriers.insert(a);
+    }
+    ASSERT_FALSE(carriers.empty());
+    EXPECT_THAT(succeeds("ask out --order").out, HasSubstr("\n  1. Object "));
+
+    std::size_t fallen = 0;
+    for (const int id : carriers) {
+        const std::string n = std::to_string(id);
+        const json without = json::parse(succeeds("ask out --json --without " + n).out);
+        EXPECT_EQ(without.at("objects"), json({id}));
+        const json before = json::parse(succeeds("ask out --json --before " + n).out);
+        EXPECT_EQ(before.at("steps").size(), without.at("falls").size() + 1) << "no rings here";
+        const std::string words = succeeds("ask out --without " + n).out;
+        for (const auto& one : without.at("falls"))
+            EXPECT_THAT(words, HasSubstr("  " + one.at("reason").get<std::string>() + ".\n"));
+        EXPECT_THAT(words, HasSubstr("Without object " + n));
+        fallen += without.at("falls").size();
+    }
+    EXPECT_GT(fallen, 0u);
+
+    const std::string n = std::to_string(*carriers.begin());
+    EXPECT_THAT(succeeds("ask out --before " + n).out, HasSubstr("object " + n));
+    const json holds = json::parse(succeeds("ask out --json --holds " + n).out);
+    EXPECT_EQ(holds.at("rests_by"), objects[*carriers.begin()].at("rests_by"));
+    const std::string held = succeeds("ask out --holds " + n).out;
+    EXPECT_THAT(held, HasSubstr("Object " + n));
+    for (const auto& holder : holds.at("held_by"))
+        EXPECT_THAT(held,
+                    HasSubstr(holder.at("building")
+                                  ? "  The building"
+                                  : "  Object " + std::to_string(holder.at("object").get<int>())));
+}
+
+}  // namespace
+}  // namespace topple::test
