@@ -16,7 +16,7 @@ constexpr double most_turned_cosine = 0.5, most_moved_m = 4;
 // Looks that decide, the first ones.
 constexpr int most_looks = 3;
 // Deviations of a reading beyond which it is another place, and what poses are off besides.
-constexpr float sure = 3, pose_error_m = 0.02F;
+constexpr float sure = 3, pose_error_m = 0.03F;
 
 struct Camera {
     explicit Camera(const Mat4& pose) {

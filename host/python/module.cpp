@@ -101,6 +101,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_labels(module);
     bind_export(module);
     bind_kernels(module);
+    bind_session(module);
     bind_stages(module);
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         const py::gil_scoped_release release;

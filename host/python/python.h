@@ -49,6 +49,7 @@ void bind_labels(py::module_& module);
 void bind_parse(py::module_& module);
 void bind_places(py::module_& module);
 void bind_result(py::module_& module);
+void bind_session(py::module_& module);
 void bind_stages(py::module_& module);
 
 }  // namespace topple::python

@@ -28,12 +28,13 @@ from ._frames import Frames as _Frames
 from ._options import named as _named, option as _option
 from ._program import generate
 from ._removal import RemovalOrder
+from ._session import LiveScene, Session, Thing
 from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, PossibleThing, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Holder', 'Landscape', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
-           'Support', 'Unheld', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
+__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
+           'Session', 'Support', 'Thing', 'Unheld', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()
 for _kind in _snapshot.ITEMS:  # of a live result: a plain item that stands alone comes back

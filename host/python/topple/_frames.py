@@ -7,7 +7,7 @@ from ._arrays import as_array, error, exactly, is_masked, usage
 from .stages import camera
 
 
-def _depth(source, name):
+def depth_image(source, name):
     """(height, width) uint16 or float32, its rows without gaps."""
     if is_masked(source) and source.dtype.kind == 'u':
         source = source.filled(0)
@@ -20,7 +20,7 @@ def _depth(source, name):
     return _without_gaps(values, np.uint16 if values.dtype.kind == 'u' else np.float32)
 
 
-def _colour(source, name):
+def colour_image(source, name):
     """(height, width, 3) uint8, its rows without gaps."""
     values = as_array(source, name)
     if values.ndim != 3 or values.shape[2] != 3 or values.dtype != np.uint8:
@@ -34,25 +34,25 @@ def _without_gaps(values, dtype):
     return values if inner.flags.c_contiguous else np.ascontiguousarray(values)
 
 
-def _poses(given, count):
+def poses(given, count):
     """16 numbers for each frame, in a row; none for a single frame without a pose."""
     if given is None:
         if count != 1:
             raise usage(f'camera_to_world: {count} frames take a pose each, an array of shape ({count}, 4, 4)')
         return np.empty(0)
-    poses = as_array(given, 'camera_to_world')
-    if poses.shape == (4, 4):
-        poses = poses[None]
-    if poses.shape != (count, 4, 4):
+    found = as_array(given, 'camera_to_world')
+    if found.shape == (4, 4):
+        found = found[None]
+    if found.shape != (count, 4, 4):
         expected = f'({count}, 4, 4), a pose for each of the frames' if count != 1 else '(4, 4)'
-        mend = '; add the row 0, 0, 0, 1' if poses.shape in ((3, 4), (count, 3, 4)) else ''
-        raise usage(f'camera_to_world: expected shape {expected}, not {poses.shape}{mend}')
-    if not np.issubdtype(poses.dtype, np.number) or poses.dtype.kind == 'c':
-        raise usage(f'camera_to_world: expected floats, not {poses.dtype}')
-    if not np.isfinite(poses).all():
-        frame = int(np.argwhere(~np.isfinite(poses))[0][0])
+        mend = '; add the row 0, 0, 0, 1' if found.shape in ((3, 4), (count, 3, 4)) else ''
+        raise usage(f'camera_to_world: expected shape {expected}, not {found.shape}{mend}')
+    if not np.issubdtype(found.dtype, np.number) or found.dtype.kind == 'c':
+        raise usage(f'camera_to_world: expected floats, not {found.dtype}')
+    if not np.isfinite(found).all():
+        frame = int(np.argwhere(~np.isfinite(found))[0][0])
         raise error('input', f'frames: the pose of frame {frame} is not finite; leave the frame out')
-    return exactly(poses.astype(float).ravel(), 'camera_to_world', (None,), float)
+    return exactly(found.astype(float).ravel(), 'camera_to_world', (None,), float)
 
 
 class Frames:
@@ -74,12 +74,12 @@ class Frames:
         if self._colours is not None and len(self._colours) != self._count:
             raise usage(f'colours: there are {len(self._colours)} images for {self._count} frames; give one for each, None where there '
                         'is none')
-        self._poses = _poses(camera_to_world, self._count)
+        self._poses = poses(camera_to_world, self._count)
 
     def _load(self, number):
-        depth = _depth(self._frames[number], f'frames[{number}]')
+        depth = depth_image(self._frames[number], f'frames[{number}]')
         seen = None if self._colours is None else self._colours[number]
-        return depth, None if seen is None else _colour(seen, f'colours[{number}]')
+        return depth, None if seen is None else colour_image(seen, f'colours[{number}]')
 
     def __len__(self):
         return self._count
@@ -107,7 +107,7 @@ def one_frame(frame, camera_to_world, intrinsics):
     """A depth image of its own as labelled() takes it: depth, pose and camera."""
     if intrinsics is None or camera_to_world is None:
         raise usage('frame_labels: a depth image takes camera_to_world, a (4, 4) array, and a topple.stages.Intrinsics')
-    return _depth(frame, 'frame'), _poses(camera_to_world, 1), camera(intrinsics, 'intrinsics')
+    return depth_image(frame, 'frame'), poses(camera_to_world, 1), camera(intrinsics, 'intrinsics')
 
 
 def _images(given, name, pixel):

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "topple/session.h"
+
+#include <atomic>
+#include <chrono>
+
+#include "arrays.h"
+#include "busy.h"
+
+// Scans that are still being made. Tuples, which topple/_session.py names.
+namespace topple::python {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+const char* to_string(Change change) {
+    constexpr const char* names[] = {"none", "found", "came", "moved", "changed", "lost", "gone"};
+    return names[static_cast<std::size_t>(change)];
+}
+
+// Whether the interpreter ends, or a signal such as Ctrl-C came: then Python's error is set.
+class Stopped {
+  public:
+    bool operator()() const {
+        if (Busy::must_stop()) return true;
+        const auto now = Clock::now().time_since_epoch().count();
+        auto asked = asked_->load();
+        constexpr Clock::duration pause = std::chrono::milliseconds(50);
+        if (now - asked < pause.count() || !asked_->compare_exchange_strong(asked, now))
+            return false;
+        const py::gil_scoped_acquire acquire;
+        return PyErr_CheckSignals() != 0;
+    }
+
+  private:
+    std::shared_ptr<std::atomic<Clock::rep>> asked_ = std::make_shared<std::atomic<Clock::rep>>(0);
+};
+
+class PySession {
+  public:
+    PySession(const std::array<std::uint32_t, 2>& size, const std::array<double, 5>& camera,
+              const std::shared_ptr<SharedDevice>& device, ParseOptions options, bool forget_gone,
+              std::uint64_t max_frame_bytes)
+        : camera_(camera) {
+        if (device) options.device = device->here();
+        options.cancelled = Stopped();
+        const Intrinsics k = intrinsics(size[0], size[1], camera);
+        session_ = std::make_unique<Session>(
+            k, std::nullopt, SessionOptions{std::move(options), forget_gone, max_frame_bytes});
+    }
+    FrameId add(const PyFrame& frame, const py::array& pose) {
+        const FramesView view = seen(frame, pose);
+        return unlocked([&] { return session_->add(view.images[0], view.camera_to_world[0]); });
+    }
+    void correct(const std::vector<FrameId>& frames, const py::array& poses) {
+        const auto numbers = row<const double>(poses, "camera_to_world");
+        std::map<FrameId, Mat4> given;
+        for (std::size_t n = 0; n < frames.size(); ++n)
+            std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(16 * n), 16,
+                        given[frames[n]].begin());
+        unlocked([&] { session_->correct(given); });
+    }
+    py::tuple label(const PyFrame& frame, const py::array& pose) const {
+        const FramesView view = seen(frame, pose);
+        ThingLabels found =
+            unlocked([&] { return session_->label(view.images[0], view.camera_to_world[0]); });
+        return py::make_tuple(found.height, found.width, owned(std::move(found.thing)));
+    }
+    py::object update() {
+        std::shared_ptr<const LiveScene> found;
+        try {
+            found = unlocked([&] { return session_->update(); });
+        } catch (const Error&) {
+            if (PyErr_Occurred()) throw py::error_already_set();
+            throw;
+        }
+        return described(*found);
+    }
+    py::object scene() const {
+        const auto found = session_->scene();
+        return found ? described(*found) : py::none();
+    }
+    Session& session() { return *session_; }
+
+  private:
+    FramesView seen(const PyFrame& frame, const py::array& pose) const {
+        const std::array<std::uint32_t, 2> size{static_cast<std::uint32_t>(frame.first.shape(1)),
+                                                static_cast<std::uint32_t>(frame.first.shape(0))};
+        return frames_view({frame}, size, pose, camera_, "frame");
+    }
+    static py::object described(const LiveScene& found) {
+        auto parsed = std::make_shared<Parsed>();
+        parsed->result = *found.result;
+        py::list things;
+        for (const Thing& thing : found.things)
+            things.append(
+                py::make_tuple(thing.id, thing.object, to_string(thing.change), thing.moved_m));
+        return py::make_tuple(parsed, things, found.frames);
+    }
+    std::array<double, 5> camera_;
+    std::unique_ptr<Session> session_;
+};
+
+}  // namespace
+
+void bind_session(py::module_& module) {
+    py::class_<PySession>(module, "Session")
+        .def(py::init<const std::array<std::uint32_t, 2>&, const std::array<double, 5>&,
+                      const std::shared_ptr<SharedDevice>&, ParseOptions, bool, std::uint64_t>())
+        .def("add", &PySession::add)
+        .def("correct", &PySession::correct)
+        .def("forget", [](PySession& s, FrameId frame) { s.session().forget(frame); })
+        .def("frames", [](PySession& s) { return s.session().frames(); })
+        .def("frame_bytes", [](PySession& s) { return s.session().frame_bytes(); })
+        .def("update", &PySession::update)
+        .def("scene", &PySession::scene)
+        .def("label", &PySession::label);
+}
+
+}  // namespace topple::python

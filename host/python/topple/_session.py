@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""A scan that is still being made."""
+import operator
+from typing import NamedTuple
+
+import numpy as np
+
+from . import _topple
+from ._arrays import usage
+from ._device import open_device
+from ._frames import colour_image, depth_image, poses as _poses
+from ._options import option
+from .stages import camera
+
+
+class Thing(NamedTuple):
+    """What is the same from update to update of a Session."""
+    id: int  # the same as long as it is the same thing; 0: the building
+    object: int  # id in LiveScene.result; -1: it is lost or gone
+    change: str  # since the update before: "none", "found" (not seen or told apart before), "came", "moved", "changed" (what it stands on, its category), "lost" (not told apart any more), "gone"
+    moved_m: float  # how far, where it moved
+
+
+class LiveScene(NamedTuple):
+    """What an update of a Session has found."""
+    result: "Result"
+    things: "list[Thing]"  # by objects of the result, then what is lost or gone
+    frames: "list[int]"  # that it was parsed from
+
+
+class Session:
+    """A scan that grows: depth frames come one by one, a SLAM system corrects their poses, and update() says what is there, and what came,
+    moved and has gone since.
+
+    intrinsics: a topple.stages.Intrinsics of all frames. forget_gone: whether readings are left out at places that most of the latest looks
+    see through. max_frame_bytes: that kept frames take, compressed (640 x 480 pixels about 0.3 MB); where that is not enough those go whose
+    camera has a neighbour in time next to it. The other options are those of parse(). One thread may add frames while another updates.
+    Raises Error as parse() does."""
+
+    def __init__(self, intrinsics, *, device=None, voxel_m=0.0, up=None, disturbances=None, seed=1, density_kg_m3=700.0, friction=0.3,
+                 tolerable_J=0.1, wind_m_s=12.0, forget_gone=True, max_frame_bytes=2_000_000_000):
+        self._camera = camera(intrinsics, 'intrinsics')
+        self._options = _topple.Options()
+        given = {'voxel_m': voxel_m, 'up': up, 'seed': seed, 'density_kg_m3': density_kg_m3, 'friction': friction,
+                 'tolerable_J': tolerable_J, 'wind_m_s': wind_m_s}
+        if disturbances is not None:
+            given['disturbances'] = disturbances
+        for name, value in given.items():
+            setattr(self._options, name, option(name, value))
+        device = option('device', device)
+        self._device = open_device(device) if isinstance(device, str) else device
+        self._forget_gone = bool(forget_gone)
+        self._max_frame_bytes = option('max_memory_bytes', max_frame_bytes)
+        self._session = None  # once the frames' size is known
+
+    def add(self, depth, camera_to_world, colour=None):
+        """Copies a frame in, and returns its number, from 0. depth: (H, W) uint16, metres times depth_scale, 0: no reading; or floats, metres.
+        camera_to_world: (4, 4), metres, camera x right, y down, z forward. colour: (H, W, 3) uint8 sRGB, or None. A frame without
+        readings, or that of before once more, is an Error of kind "input"."""
+        depth = depth_image(depth, 'depth')
+        frame = depth, None if colour is None else colour_image(colour, 'colour')
+        pose = _poses(camera_to_world, 1)
+        if not len(pose):
+            raise usage('camera_to_world: expected an array of shape (4, 4)')
+        if self._session is None:
+            height, width = depth.shape
+            self._session = _topple.Session((width, height), self._camera, self._device, self._options, self._forget_gone, self._max_frame_bytes)
+        return self._session.add(frame, pose)
+
+    def correct(self, camera_to_world):
+        """After a loop closure: a dict of the poses, (4, 4), that are others now, by frame."""
+        frames = [self._number(frame) for frame in camera_to_world]
+        if frames:
+            self._begun().correct(frames, _poses(np.stack([np.asarray(pose, float) for pose in camera_to_world.values()]), len(frames)))
+
+    def forget(self, frame):
+        """Leaves a frame out."""
+        self._begun().forget(self._number(frame))
+
+    @property
+    def frames(self):
+        """Numbers of the frames that are kept."""
+        return self._session.frames() if self._session else []
+
+    @property
+    def frame_bytes(self):
+        """That kept frames take."""
+        return self._session.frame_bytes() if self._session else 0
+
+    def update(self):
+        """Parses the frames that are there now: a LiveScene, whose result is that of parse() of the same frames and poses, but for what has
+        gone, whatever was added, corrected or forgotten before. Ctrl-C stops it, and the scene before stays."""
+        return self._described(self._begun().update())
+
+    @property
+    def scene(self):
+        """The LiveScene of the last update; None before the first."""
+        found = self._session and self._session.scene()
+        return self._described(found) if found else None
+
+    def label(self, depth, camera_to_world):
+        """The id of the Thing that each pixel of a depth image shows, (H, W) int64; -1: nothing that is known."""
+        height, width, ids = self._begun().label((depth_image(depth, 'depth'), None), _poses(camera_to_world, 1))
+        return ids.reshape(height, width)
+
+    @staticmethod
+    def _number(frame):
+        try:
+            number = operator.index(frame)
+        except TypeError:
+            number = -1
+        if number < 0 or isinstance(frame, bool):
+            raise usage(f'session: there is no frame {frame!r}')
+        return number
+
+    def _begun(self):
+        if self._session is None:
+            raise usage('session: there are no frames yet; add some first')
+        return self._session
+
+    @staticmethod
+    def _described(found):
+        from . import Result
+        parsed, things, frames = found
+        return LiveScene(Result(parsed, None), [Thing(*thing) for thing in things], frames)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""Sessions: frames come one by one, poses are corrected, things keep their ids."""
+import numpy as np
+import pytest
+
+import topple
+from made_scans import CAMERA, POSES
+
+INTRINSICS = topple.stages.Intrinsics(CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy)
+
+
+@pytest.fixture(scope='module')
+def depth_frames(walk):
+    return np.stack([np.round(1000 * metres).astype(np.uint16) for _, metres in walk])
+
+
+def shifted(pose, metres):
+    pose = pose.copy()
+    pose[0, 3] += metres
+    return pose
+
+
+def session(device, **options):
+    return topple.Session(INTRINSICS, device=device, disturbances=[], **options)
+
+
+def test_an_update_is_a_parse_of_the_frames_that_are_there(device, depth_frames):
+    live = session(device)
+    assert live.scene is None and live.frames == [] and live.frame_bytes == 0
+    for n, depth in enumerate(depth_frames):
+        assert live.add(depth, shifted(POSES[n], 0.2 if n % 3 else 0)) == n
+    assert live.update().frames == list(range(len(depth_frames)))
+    live.correct({n: POSES[n] for n in range(len(depth_frames))})
+    found = live.update()
+    parsed = topple.parse(frames=depth_frames, camera_to_world=np.array(POSES), intrinsics=INTRINSICS, device=device, disturbances=[])
+    assert np.array_equal(found.result.point_object, parsed.point_object)
+    assert [o.mass_kg for o in found.result.objects] == [o.mass_kg for o in parsed.objects]
+    assert [thing.object for thing in found.things[:len(parsed.objects)]] == [o.id for o in parsed.objects]
+    # Nothing new.
+    again = live.update()
+    assert [(t.id, t.change) for t in again.things] == [(t.id, 'none') for t in found.things if t.object >= 0]
+    labels = live.label(depth_frames[0], POSES[0])
+    assert labels.shape == depth_frames[0].shape and labels.dtype == np.int64
+    objects = found.result.frame_labels(depth_frames[0], camera_to_world=POSES[0], intrinsics=INTRINSICS)
+    ids = np.array([t.id for t in found.things] + [-1])
+    assert np.array_equal(labels, ids[objects])
+    live.forget(0)
+    assert live.frames[0] == 1
+
+
+def test_what_is_no_frame_is_refused(device, depth_frames):
+    live = session(device)
+    for call, kind, words in ((live.update, 'usage', 'no frames yet'), (lambda: live.forget(3), 'usage', 'no frames yet'),
+                              (lambda: live.add(depth_frames[0], None), 'usage', 'camera_to_world'),
+                              (lambda: live.add(np.zeros_like(depth_frames[0]), POSES[0]), 'input', 'no readings')):
+        with pytest.raises(topple.Error, match=words) as raised:
+            call()
+        assert raised.value.kind == kind
+    live.add(depth_frames[0], POSES[0])
+    for call, words in ((lambda: live.add(depth_frames[0], POSES[0]), 'once more'), (lambda: live.add(depth_frames[1][:50], POSES[1]), 'pixels'),
+                        (lambda: live.forget(7), 'no frame 7'), (lambda: live.forget('x'), "no frame 'x'"),
+                        (lambda: live.correct({7: POSES[0]}), 'no frame 7'), (lambda: live.add(depth_frames[1].astype(int), POSES[1]), 'uint16')):
+        with pytest.raises(topple.Error, match=words):
+            call()
+    assert live.frames == [0]
+    with pytest.raises(topple.Error, match='max_frame_bytes'):
+        session(device, max_frame_bytes=0).add(depth_frames[0], POSES[0])
