@@ -7,10 +7,6 @@
 namespace topple::c_api {
 namespace {
 
-Intrinsics intrinsics_of(const topple_intrinsics& from) {
-    return {from.width, from.height, from.fx, from.fy, from.cx, from.cy, from.depth_scale};
-}
-
 // An image where the struct says that it lies; NULL: there is none.
 template <class Pixel, class Value>
 ImageView<Pixel> image_of(const Value* first, std::uint32_t width, std::uint32_t height,
@@ -29,6 +25,10 @@ FrameView frame_of(const topple_frame& f, const Intrinsics& k) {
 }
 
 }  // namespace
+
+Intrinsics intrinsics_of(const topple_intrinsics& from) {
+    return {from.width, from.height, from.fx, from.fy, from.cx, from.cy, from.depth_scale};
+}
 
 FramesView frames_of(const topple_frames* frames) {
     const topple_frames f = known(&needed(frames, "frames"), {}, "frames");

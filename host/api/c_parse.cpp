@@ -7,9 +7,7 @@
 #include "export/formats.h"
 
 namespace topple::c_api {
-namespace {
-
-topple_options defaults() {
+topple_options default_options() {
     const ParseOptions from;
     topple_options o{};
     o.size = sizeof(o);
@@ -20,7 +18,6 @@ topple_options defaults() {
     return o;
 }
 
-// The callbacks must not outlive `o`.
 ParseOptions parse_options(const topple_options& o) {
     ParseOptions to;
     if (o.device) to.device = o.device->device;
@@ -67,12 +64,14 @@ ParseOptions parse_options(const topple_options& o) {
     return to;
 }
 
+namespace {
+
 template <class Parse>
 int parsed(const topple_options* given_options, topple_result** result, topple_status* status,
            const Parse& parse_with) {
     return guarded(status, [&] {
         needed(result, "result") = nullptr;
-        const topple_options o = known(given_options, defaults(), "options");
+        const topple_options o = known(given_options, default_options(), "options");
         ParseResult done = parse_with(parse_options(o));
         if (o.log)
             for (const std::string& note : done.scene.notes)
@@ -109,7 +108,7 @@ using namespace topple;
 using namespace topple::c_api;
 
 void topple_options_init(topple_options* options, size_t size) {
-    begin(options, size, defaults());
+    begin(options, size, default_options());
 }
 
 int topple_parse(const char* path, const topple_options* options, topple_result** result,

@@ -118,5 +118,9 @@ void give(const Struct& from, Struct* to, const char* name) {
 CloudView view_of(const topple_cloud* cloud);
 // Throws Error(usage) for frames without images to read.
 FramesView frames_of(const topple_frames* frames);
+Intrinsics intrinsics_of(const topple_intrinsics& from);
+topple_options default_options();
+// Its callbacks must not outlive `o`.
+ParseOptions parse_options(const topple_options& o);
 
 }  // namespace topple::c_api

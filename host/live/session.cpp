@@ -95,20 +95,19 @@ class Session::State {
         const std::lock_guard lock(frames_mutex_);
         last_ = sum.value();
         bytes_ += kept->bytes();
-        frames_[next_] = {std::move(kept), frame.camera_to_world};
+        frames_[next_] = {std::move(kept), pose};
         ++changes_;
         while (bytes_ > options_.max_frame_bytes && frames_.size() > 1) drop_least_missed();
         return next_++;
     }
     void correct(const std::map<FrameId, Mat4>& poses) {
-        std::map<FrameId, Mat4> rigid = poses;
-        for (auto& [frame, pose] : rigid) {
+        for (auto [frame, pose] : poses) {
             if (frame >= next_) no_such(frame);
             if (const auto fault = io::make_rigid(pose))
                 throw Error(ErrorKind::input, name_of(frame) + ": camera_to_world: " + *fault);
         }
         const std::lock_guard lock(frames_mutex_);
-        for (const auto& [frame, pose] : rigid) {
+        for (const auto& [frame, pose] : poses) {
             const auto kept = frames_.find(frame);
             if (kept == frames_.end() || kept->second.pose == pose) continue;
             kept->second.pose = pose;
@@ -196,7 +195,7 @@ class Session::State {
   private:
     struct Kept {
         std::shared_ptr<const live::KeptFrame> frame;
-        Mat4 pose{};
+        Mat4 pose{};  // as it was given: made rigid twice it may be another in its last bits
     };
     using Frames = std::map<FrameId, Kept>;
 

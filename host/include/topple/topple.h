@@ -410,6 +410,50 @@ int topple_result_add_coordinates(topple_result* result, const topple_cloud* clo
 int topple_result_export(const topple_result* result, const char* format, const char* path,
                          topple_status* status);
 
+/* --- A scan that is still being made: topple/session.h says more ----------------------------- */
+
+typedef struct topple_session topple_session;
+/* Of a camera; colour NULL: its colour images are seen as depth is. options NULL: defaults; what
+ * they point to must stay as long as the session. max_frame_bytes 0: the default. keep_gone: 1 to
+ * count readings, too, at places that later frames see through; else 0. */
+int topple_session_create(const topple_intrinsics* depth, const topple_intrinsics* colour,
+                          const topple_options* options, uint64_t max_frame_bytes, int keep_gone,
+                          topple_session** session, topple_status* status);
+void topple_session_release(topple_session* session);
+/* Adds frames of that camera, whose intrinsics count, copied. `ids`, which may be NULL, gets the id
+ * of each. Those before one that is refused stay. */
+int topple_session_add(topple_session* session, const topple_frames* frames, uint64_t* ids,
+                       topple_status* status);
+/* camera_to_world: 16 numbers for each of `count` frames, row-major, metres. */
+int topple_session_correct(topple_session* session, const uint64_t* ids,
+                           const double* camera_to_world, uint64_t count, topple_status* status);
+int topple_session_forget(topple_session* session, uint64_t id, topple_status* status);
+/* Parses what is there. `result`, which may be NULL, gets a result of its own, which is to be
+ * released; `things` how many topple_session_thing() has then. */
+int topple_session_update(topple_session* session, topple_result** result, uint64_t* things,
+                          topple_status* status);
+enum {
+    TOPPLE_CHANGE_NONE = 0,
+    TOPPLE_CHANGE_FOUND = 1,   /* not seen, or not told apart, before */
+    TOPPLE_CHANGE_CAME = 2,    /* its place was seen to be free before */
+    TOPPLE_CHANGE_MOVED = 3,   /* by moved_m */
+    TOPPLE_CHANGE_CHANGED = 4, /* it stands on something else, or its category is another */
+    TOPPLE_CHANGE_LOST = 5,    /* not told apart any more */
+    TOPPLE_CHANGE_GONE = 6     /* its place was seen to be free since */
+};
+typedef struct topple_thing {
+    size_t size;
+    uint64_t id;    /* the same as long as it is the same thing; 0: the building */
+    int32_t object; /* of the last update's result; -1: it is lost or gone */
+    int32_t change; /* since the update before */
+    double moved_m;
+} topple_thing;
+int topple_session_thing(const topple_session* session, uint64_t index, topple_thing* thing,
+                         topple_status* status);
+/* The thing that each pixel of frame `number` shows, row by row; -1: nothing that is known. */
+int topple_session_label(const topple_session* session, const topple_frames* frames,
+                         uint64_t number, int64_t* things, topple_status* status);
+
 /* --- Single stages: topple/stages.h says more ----------------------------------------------- */
 
 /* `device` must be one that was opened or adopted: here NULL is TOPPLE_ERROR_USAGE. */

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 #include "host/pipeline/scan.h"
@@ -26,6 +27,11 @@ class Sessions : public Files {
     }
     static FrameView frame(std::size_t n) { return frames_view_of(*walk_).images.at(n); }
     static const Mat4& pose(std::size_t n) { return walk_->frames.at(n).camera_to_world; }
+    // Rounded, as poses come.
+    static Mat4 rounded(Mat4 pose) {
+        for (std::size_t n = 0; n < 12; ++n) pose[n] = std::round(pose[n] * 3e4) / 3e4;
+        return pose;
+    }
     static Mat4 shifted(Mat4 pose, double x_m) {
         pose[3] += x_m;
         return pose;
@@ -60,8 +66,15 @@ TEST_F(Sessions, AnUpdateIsAParseOfTheFramesThatAreThere) {
     session.add(frame(5), pose(5));
     const auto found = session.update();
     EXPECT_EQ(found->frames, (std::vector<FrameId>{0, 1, 2, 3, 4, 6}));
-    expect_same(found->result->scene, parse(frames_view_of(*walk_), options.parse).scene);
+    FramesView same = frames_view_of(*walk_);
+    expect_same(found->result->scene, parse(same, options.parse).scene);
     EXPECT_EQ(session.scene(), found);
+
+    std::map<FrameId, Mat4> poses;
+    for (std::size_t n = 0; n < 6; ++n)
+        same.camera_to_world[n] = poses[found->frames[n]] = rounded(pose(n));
+    session.correct(poses);
+    expect_same(session.update()->result->scene, parse(same, options.parse).scene);
 }
 
 TEST_F(Sessions, ThingsKeepTheirIdsWhereverTheirFramesGo) {

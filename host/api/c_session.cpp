@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include <map>
+#include <string>
+#include <utility>
+
+#include "api/c_result.h"
+#include "api/c_support.h"
+#include "topple/session.h"
+
+using namespace topple;
+using namespace topple::c_api;
+
+struct topple_session {
+    topple_options options;  // whose callbacks the session has
+    std::unique_ptr<Session> session;
+    std::shared_ptr<const LiveScene> updated;
+};
+
+static_assert(int{TOPPLE_CHANGE_FOUND} == int(Change::found) &&
+              int{TOPPLE_CHANGE_CAME} == int(Change::came) &&
+              int{TOPPLE_CHANGE_MOVED} == int(Change::moved) &&
+              int{TOPPLE_CHANGE_CHANGED} == int(Change::changed) &&
+              int{TOPPLE_CHANGE_LOST} == int(Change::lost) &&
+              int{TOPPLE_CHANGE_GONE} == int(Change::gone));
+
+int topple_session_create(const topple_intrinsics* depth, const topple_intrinsics* colour,
+                          const topple_options* options, uint64_t max_frame_bytes, int keep_gone,
+                          topple_session** session, topple_status* status) {
+    return guarded(status, [&] {
+        needed(session, "session") = nullptr;
+        auto made = std::make_unique<topple_session>();
+        made->options = known(options, default_options(), "options");
+        SessionOptions wanted;
+        wanted.parse = parse_options(made->options);
+        wanted.forget_gone = keep_gone == 0;
+        if (max_frame_bytes > 0) wanted.max_frame_bytes = max_frame_bytes;
+        std::optional<Intrinsics> seen;
+        if (colour) seen = intrinsics_of(*colour);
+        made->session = std::make_unique<Session>(intrinsics_of(needed(depth, "depth")), seen,
+                                                  std::move(wanted));
+        *session = made.release();
+    });
+}
+
+void topple_session_release(topple_session* session) {
+    delete session;
+}
+
+int topple_session_add(topple_session* session, const topple_frames* frames, uint64_t* ids,
+                       topple_status* status) {
+    return guarded(status, [&] {
+        Session& to = *needed(session, "session").session;
+        const FramesView view = frames_of(frames);
+        if (view.camera_to_world.empty())
+            throw Error(ErrorKind::usage, "frames: camera_to_world is NULL; a session needs poses");
+        for (std::size_t n = 0; n < view.camera_to_world.size(); ++n) {
+            const FrameId id = to.add(view.images.empty() ? view.image(n) : view.images[n],
+                                      view.camera_to_world[n]);
+            if (ids) ids[n] = id;
+        }
+    });
+}
+
+int topple_session_correct(topple_session* session, const uint64_t* ids,
+                           const double* camera_to_world, uint64_t count, topple_status* status) {
+    return guarded(status, [&] {
+        array(ids, "ids", count);
+        array(camera_to_world, "camera_to_world", count, 16);
+        std::map<FrameId, Mat4> poses;
+        for (std::uint64_t n = 0; n < count; ++n)
+            std::copy_n(camera_to_world + 16 * n, 16, poses[ids[n]].begin());
+        needed(session, "session").session->correct(poses);
+    });
+}
+
+int topple_session_forget(topple_session* session, uint64_t id, topple_status* status) {
+    return guarded(status, [&] { needed(session, "session").session->forget(id); });
+}
+
+int topple_session_update(topple_session* session, topple_result** result, uint64_t* things,
+                          topple_status* status) {
+    return guarded(status, [&] {
+        if (result) *result = nullptr;
+        topple_session& of = needed(session, "session");
+        of.updated = of.session->update();
+        if (things) *things = of.updated->things.size();
+        if (result)
+            *result = new topple_result(ParseResult(*of.updated->result), of.options.allocator);
+    });
+}
+
+int topple_session_thing(const topple_session* session, uint64_t index, topple_thing* thing,
+                         topple_status* status) {
+    return guarded(status, [&] {
+        const auto& updated = needed(session, "session").updated;
+        const std::uint64_t count = updated ? updated->things.size() : 0;
+        if (index >= count)
+            throw Error(ErrorKind::usage, "index: there is no thing " + std::to_string(index) +
+                                              "; there are " + std::to_string(count));
+        const Thing& from = updated->things[index];
+        topple_thing out{};
+        out.id = from.id;
+        out.object = from.object;
+        out.change = static_cast<std::int32_t>(from.change);
+        out.moved_m = from.moved_m;
+        give(out, thing, "thing");
+    });
+}
+
+int topple_session_label(const topple_session* session, const topple_frames* frames,
+                         uint64_t number, int64_t* things, topple_status* status) {
+    return guarded(status, [&] {
+        needed(things, "things");
+        const FramesView view = frames_of(frames);
+        if (number >= view.camera_to_world.size())
+            throw Error(ErrorKind::usage,
+                        "frames: there is no pose of frame " + std::to_string(number));
+        const ThingLabels found =
+            needed(session, "session")
+                .session->label(view.images.empty() ? view.image(number) : view.images[number],
+                                view.camera_to_world[number]);
+        std::ranges::copy(found.thing, things);
+    });
+}

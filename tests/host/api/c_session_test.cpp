@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "host/api/c_api.h"
+#include "host/pipeline/small_walk.h"
+#include "topple/session.h"
+
+// Sessions in C are those of C++.
+namespace topple::test {
+namespace {
+
+TEST_F(CApi, ASessionIsThatOfCpp) {
+    const scenes::Sequence walk = small_walk();
+    std::vector<topple_frame> images(walk.frames.size());
+    std::vector<double> poses;
+    for (std::size_t n = 0; n < images.size(); ++n) {
+        topple_frame_init(&images[n], sizeof(topple_frame));
+        images[n].depth = walk.frames[n].depth.data();
+        const Mat4& pose = walk.frames[n].camera_to_world;
+        poses.insert(poses.end(), pose.begin(), pose.end());
+    }
+    const std::vector<double> right = poses;
+    poses[3] += 0.2;
+    topple_frames frames;
+    topple_frames_init(&frames, sizeof(frames));
+    frames.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
+    frames.count = images.size();
+    frames.camera_to_world = poses.data();
+    frames.frames = images.data();
+    options.disturbances = 0;
+
+    topple_session* session = nullptr;
+    ASSERT_EQ(topple_session_create(&frames.intrinsics, nullptr, &options, 0, 1, &session, &status),
+              TOPPLE_OK)
+        << status.message;
+    topple_thing thing{};
+    thing.size = sizeof(thing);
+    EXPECT_EQ(topple_session_thing(session, 0, &thing, &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_session_update(session, &result, nullptr, &status), TOPPLE_ERROR_INPUT);
+    std::vector<std::uint64_t> ids(images.size());
+    ASSERT_EQ(topple_session_add(session, &frames, ids.data(), &status), TOPPLE_OK)
+        << status.message;
+    EXPECT_EQ(ids, (std::vector<std::uint64_t>{0, 1, 2, 3, 4, 5}));
+    ASSERT_EQ(topple_session_correct(session, ids.data(), right.data(), 1, &status), TOPPLE_OK);
+    ASSERT_EQ(topple_session_forget(session, 5, &status), TOPPLE_OK);
+    EXPECT_EQ(topple_session_forget(session, 5, &status), TOPPLE_ERROR_USAGE);
+    std::uint64_t things = 0;
+    ASSERT_EQ(topple_session_update(session, &result, &things, &status), TOPPLE_OK)
+        << status.message;
+
+    SessionOptions same;
+    same.parse.device = device::open_device("native", 2);
+    same.parse.disturbances = {};
+    same.forget_gone = false;
+    Session other(walk.intrinsics, {}, same);
+    for (std::size_t n = 0; n < 5; ++n)
+        other.add(frames_view_of(walk).images[n], walk.frames[n].camera_to_world);
+    const auto expected = other.update();
+    ASSERT_EQ(things, expected->things.size());
+    EXPECT_TRUE(std::ranges::equal(
+        expected->result->scene.points.object,
+        std::span(topple_result_point_objects(result), expected->result->scene.points.x.size())));
+    for (std::uint64_t n = 0; n < things; ++n) {
+        ASSERT_EQ(topple_session_thing(session, n, &thing, &status), TOPPLE_OK);
+        EXPECT_EQ(thing.id, expected->things[n].id);
+        EXPECT_EQ(thing.object, expected->things[n].object);
+        EXPECT_EQ(thing.change, TOPPLE_CHANGE_FOUND);
+    }
+    frames.camera_to_world = right.data();
+    std::vector<std::int64_t> labels(std::size_t{96} * 72);
+    ASSERT_EQ(topple_session_label(session, &frames, 1, labels.data(), &status), TOPPLE_OK);
+    EXPECT_EQ(labels,
+              other.label(frames_view_of(walk).images[1], walk.frames[1].camera_to_world).thing);
+    EXPECT_EQ(topple_session_label(session, &frames, 6, labels.data(), &status),
+              TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_session_correct(session, nullptr, right.data(), 1, &status),
+              TOPPLE_ERROR_USAGE);
+    topple_session_release(session);
+    EXPECT_EQ(topple_session_add(nullptr, &frames, nullptr, &status), TOPPLE_ERROR_USAGE);
+    topple_session_release(nullptr);
+}
+
+}  // namespace
+}  // namespace topple::test
