@@ -26,7 +26,7 @@ unsafety = np.array([o.unsafety for o in result.objects])
 ground = np.array([o.grounded for o in result.objects])
 labels = result.point_object
 value = np.where(labels >= 0, unsafety[labels], np.nan)
-x, y, z = result.xyz
+x, y, z = result.xyz.T
 shown = np.random.default_rng(1).permutation(np.flatnonzero((labels >= 0) & ~ground[labels]))[:60000]
 floor = np.random.default_rng(2).permutation(np.flatnonzero((labels >= 0) & ground[labels]))[:20000]
 

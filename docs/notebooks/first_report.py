@@ -22,7 +22,7 @@ for n in np.flatnonzero(loose)[np.argsort(np.nan_to_num(-table['unsafety'][loose
 
 # %% The points from above, by object and by unsafety; what holds the floor is grey
 labels = result.point_object
-x, y, z = result.xyz
+x, y, z = result.xyz.T
 shown = np.random.default_rng(1).permutation(np.flatnonzero(labels >= 0))[:80000]
 shown = shown[np.argsort(z[shown])]
 ground = table['grounded'][labels[shown]]

@@ -24,7 +24,7 @@ def of_memory(depth, device, **options):
 
 
 def same(result, expected):
-    for one, other in zip(result.xyz, expected.xyz):
+    for one, other in zip(result.xyz.T, expected.xyz.T):
         assert np.array_equal(one, other)
     assert np.array_equal(result.point_object, expected.point_object)
     assert [(o.mass_kg, o.barrier_J) for o in result.objects] == [(o.mass_kg, o.barrier_J) for o in expected.objects]

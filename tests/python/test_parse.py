@@ -138,7 +138,7 @@ def test_arrays_are_the_results_own(result, points):
         assert array.dtype == np.int32 and array.shape == (len(points),)
         assert np.shares_memory(array, getattr(result, name))
     assert np.shares_memory(result.normals[2], result.normals[2])
-    assert all(np.shares_memory(c, points) for c in result.xyz)
+    assert all(np.shares_memory(c, points) for c in result._axes())
     assert len(result.point_index) == 0
     assert np.shares_memory(np.from_dlpack(result.point_object), result.point_object)
 
@@ -173,7 +173,7 @@ def test_takes_every_layout(points, result, device, layout):
 
 def test_float32_is_not_copied(points, device):
     for given in (points, wide(points), np.asfortranarray(points)):
-        assert np.shares_memory(quick(given, device).xyz[1], given)
+        assert np.shares_memory(quick(given, device)._axes()[1], given)
 
 
 def test_points_that_are_not_finite_are_left_out(points, result, device):
@@ -181,7 +181,7 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
     parsed = quick(spoilt, device)
     assert np.array_equal(parsed.point_object, result.point_object)
     assert parsed.point_index[4] == 4 and parsed.point_index[5] == 6
-    assert np.array_equal(np.stack(parsed.xyz, 1), points)
+    assert np.array_equal(parsed.xyz, points)
 
 
 @pytest.mark.parametrize('given, words', [
@@ -359,7 +359,7 @@ def test_an_organised_cloud_is_a_frame(device, tmp_path):
                      f'VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {depth.size}\nDATA binary\n'.encode() + seen.tobytes())
     parsed = quick(file, device)
     assert parsed.image_shape == depth.shape and any(note.startswith('A single frame') for note in parsed.notes)
-    assert np.array_equal(np.stack(parsed.xyz, 1), seen.reshape(-1, 3)[parsed.point_index])
+    assert np.array_equal(parsed.xyz, seen.reshape(-1, 3)[parsed.point_index])
     labels = np.full(depth.size, -1, np.int32)
     labels[parsed.point_index] = parsed.point_object
     for got in (parsed, pickle.loads(pickle.dumps(parsed))):
@@ -472,7 +472,7 @@ def test_writes_the_outputs(result, points, tmp_path, device):
     assert not (tmp_path / 'out' / 'map.bt').exists()
     assert {'scene.json', 'points.ply', 'report.html'} <= {p.name for p in (tmp_path / 'out').iterdir()}
     again = quick(tmp_path / 'out' / 'points.ply', device)
-    assert np.array_equal(np.stack(again.xyz, 1), points) and again.source.endswith('points.ply')
+    assert np.array_equal(again.xyz, points) and again.source.endswith('points.ply')
     with pytest.raises(topple.Error):
         result.write(tmp_path)
 

@@ -197,7 +197,7 @@ def test_a_pickle_holds_all_that_can_be_asked_for(result, points, tmp_path):
     for name in dir(result):
         if not name.startswith('_') and not callable(getattr(result, name)):
             assert same(getattr(result, name), getattr(back, name)), name
-    assert np.array_equal(np.stack(back.xyz, 1), points)
+    assert np.array_equal(back.xyz, points)
     assert back._repr_html_() == result._repr_html_() and same(result.columns(), back.columns())
     assert set(dir(back)) == set(dir(result))
     again = copy.deepcopy(back)

@@ -96,7 +96,7 @@ def test_rerun(result, tmp_path):
     topple.to_rerun(result, save=tmp_path / 'scene.rrd', recording=recording)
     recording.disconnect()
     data = (tmp_path / 'scene.rrd').read_bytes()
-    assert len(data) > 12 * len(result.xyz[0])
+    assert len(data) > 12 * len(result.xyz)
     wanted = ['scan/points', 'scan/objects', 'contacts', 'supports', 'fields/wind', 'risk/wind'] + [f'objects/object_{o.id}' for o in movable(result)]
     for path in wanted:
         assert path.encode() in data, path

@@ -169,8 +169,12 @@ class Result:
 
     @property
     def xyz(self):
-        """Three arrays: the coordinates of the points that the labels are of. Of arrays that were given, views of
-        these, unless points that are not finite were left out."""
+        """The coordinates of the points that the labels are of, (N, 3), metres: a copy. Of arrays that were given, those points that are
+        finite."""
+        return np.stack(self._axes(), axis=1)
+
+    def _axes(self):
+        """They axis by axis, where they lie: of arrays that were given, views of these, unless points were left out."""
         if self._points is None:
             return self._parsed.x, self._parsed.y, self._parsed.z
         index = self._parsed.point_index
@@ -237,7 +241,7 @@ class Result:
         frame_labels(). Of a cloud that was parsed in blocks the points are a sample. Raises Error of kind "usage" for a place that is
         not finite, and a distance that is negative or NaN."""
         place_m, within_m = _option('place_m', place_m), _option('within_m', within_m)
-        columns = [np.ascontiguousarray(axis, np.float32) for axis in self.xyz]
+        columns = [np.ascontiguousarray(axis, np.float32) for axis in self._axes()]
         return _topple.object_at(columns, np.ascontiguousarray(self.point_object, np.int32), place_m, within_m)
 
     def write(self, folder, *, pictures=False, glb=False, octomap=False):

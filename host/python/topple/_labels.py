@@ -19,7 +19,7 @@ def labeller(result):
     if getattr(parsed, 'in_blocks', False):
         raise usage('frame_labels: the cloud was parsed in blocks, of which a result holds a sample of the points alone; parse frames, or a '
                     'smaller cloud')
-    return _topple.Labeller([np.ascontiguousarray(c, np.float32) for c in result.xyz],
+    return _topple.Labeller([np.ascontiguousarray(c, np.float32) for c in result._axes()],
                             *(np.ascontiguousarray(ids, np.int32) for ids in (parsed.point_primitive, parsed.point_object)), parsed.voxel_size_m)
 
 

@@ -61,7 +61,7 @@ def unsafety_colour(item):
 
 def points_of(result):
     """The scan's points, (N, 3) float32; none of a result that has no coordinates."""
-    return np.stack(result.xyz, axis=1).astype(np.float32)
+    return result.xyz.astype(np.float32, copy=False)
 
 
 def label_colours(result, owners):
