@@ -18,6 +18,7 @@
 #include "points/formats/rigid_pose.h"
 #include "topple/error.h"
 #include "topple/frame_labels.h"
+#include "topple/kernels/device.h"
 
 namespace topple {
 namespace {
@@ -80,6 +81,8 @@ class Session::State {
         if (options_.max_frame_bytes == 0)
             throw Error(ErrorKind::usage, "max_frame_bytes is 0: a session needs room for frames");
         if (!options_.parse.device) options_.parse.device = device::open_device("auto");
+        options_.parse.coordinates = true;  // things are told by them
+        threads_ = options_.parse.device->threads().threads();
     }
 
     FrameId add(const FrameView& view, const Mat4& pose) {
@@ -182,7 +185,7 @@ class Session::State {
         frames.colour_intrinsics = colour_;
         frames.camera_to_world = {pose};
         frames.images = {view};
-        const FrameLabels found = labeller->label(frames, 0);
+        const FrameLabels found = labeller->label(frames, 0, threads_);
         ThingLabels out{found.width, found.height, {}};
         out.thing.reserve(found.object.size());
         for (const std::int32_t o : found.object)
@@ -238,7 +241,7 @@ class Session::State {
             out.seen.push_back(coarse.of(kept.frame->frame()));
             out.seen.back().camera_to_world = kept.pose;
         }
-        ThreadPool threads(0);
+        ThreadPool& threads = options_.parse.device->threads();
         const std::size_t all = out.seen.size();
         out.gone = live::seen_through(
             coarse.intrinsics(), out.seen, [&](std::size_t n) { return std::pair(n + 1, all); },
@@ -271,7 +274,7 @@ class Session::State {
             view.intrinsics = k;
             view.camera_to_world = {at->second.pose};
             view.images = {view_of(passed.seen[n], k)};
-            out[at->first] = {labeller.label(view, 0).object, flags(passed.gone[n]),
+            out[at->first] = {labeller.label(view, 0, threads_).object, flags(passed.gone[n]),
                               flags(passed.came[n])};
         }
         return out;
@@ -286,6 +289,7 @@ class Session::State {
     const Intrinsics k_;
     const std::optional<Intrinsics> colour_;
     SessionOptions options_;
+    unsigned threads_ = 0;
 
     mutable std::mutex frames_mutex_;
     Frames frames_;

@@ -40,21 +40,15 @@ void prefetch(const CellSums& sums) {
 
 // Writes the cells of blocks [begin, end), which share their x, by ascending key.
 void write_slab(const std::vector<BlockPlace>& blocks, std::size_t begin, std::size_t end,
-                CellSums* out) {
+                const CellSums** out) {
     for (std::size_t x = 0; x < 4; ++x) {
         for (std::size_t column = begin, next = begin; column < end; column = next) {
             next = end_of_group(blocks, column, end, y_bits);
-            for (std::size_t b = column; b < next; ++b) {
-                for (std::size_t n = 16 * x; n < 16 * (x + 1); ++n) {
-                    const std::uint32_t at = blocks[b].block->at[n];
-                    if (at != 0) prefetch(blocks[b].table->cells()[at - 1]);
-                }
-            }
             for (std::size_t y = 0; y < 4; ++y) {
                 for (std::size_t b = column; b < next; ++b) {
                     for (std::size_t z = 0; z < 4; ++z) {
                         const std::uint32_t at = blocks[b].block->at[16 * x + 4 * y + z];
-                        if (at != 0) *out++ = blocks[b].table->cells()[at - 1];
+                        if (at != 0) *out++ = &blocks[b].table->cells()[at - 1];
                     }
                 }
             }
@@ -196,8 +190,8 @@ void WaitingReadings::clear() {
 
 std::size_t CellTable::bytes() const {
     return slots_.capacity() * sizeof(std::uint32_t) + cubes_.capacity() * sizeof(Cube) +
-           blocks_.capacity() * (sizeof(Block) + sizeof(BlockPlace)) +
-           cells_.capacity() * sizeof(CellSums) + cells_.size() * sizeof(CellSums);
+           blocks_.size() * (sizeof(Block) + sizeof(BlockPlace)) +
+           2 * cells_.size() * sizeof(CellSums);
 }
 
 std::size_t CellTables::bytes() const {
@@ -206,7 +200,7 @@ std::size_t CellTables::bytes() const {
     return sum;
 }
 
-SortedCells CellTables::sorted(ThreadPool& pool) const {
+CellPlaces CellTables::sorted(ThreadPool& pool) const {
     std::vector<BlockPlace> blocks;
     for (const CellTable& table : shards) {
         for (const CellTable::Block& block : table.blocks()) blocks.push_back({&block, &table});
@@ -222,7 +216,7 @@ SortedCells CellTables::sorted(ThreadPool& pool) const {
         slab.push_back(end);
         first.push_back(first.back() + count);
     }
-    SortedCells cells(first.back(), boost::container::default_init);
+    CellPlaces cells(first.back(), boost::container::default_init);
     pool.run(slab.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t s = begin; s < end; ++s) {
             write_slab(blocks, slab[s], slab[s + 1], cells.data() + first[s]);

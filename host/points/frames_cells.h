@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <boost/container/deque.hpp>
+#include <boost/container/options.hpp>
 #include <boost/container/vector.hpp>
 #include <cstdint>
 #include <span>
@@ -79,6 +81,11 @@ inline double mean_offset(const CellSums& cell, std::size_t axis) {
 // touched.
 class CellTable {
   public:
+    // Grows without a copy, which would take as much memory once more.
+    template <class T>
+    using Grown = boost::container::deque<
+        T, void,
+        typename boost::container::deque_options<boost::container::block_size<256U>>::type>;
     struct Block {
         std::uint64_t key = 0;
         std::uint32_t count = 0;             // of occupied cells
@@ -92,8 +99,8 @@ class CellTable {
     void add(std::span<const CellSums> sums, std::span<const std::uint32_t> which);
     // Readings of one frame.
     void add(std::span<const Reading> readings, std::uint32_t frame);
-    const std::vector<CellSums>& cells() const { return cells_; }
-    const std::vector<Block>& blocks() const { return blocks_; }
+    const Grown<CellSums>& cells() const { return cells_; }
+    const Grown<Block>& blocks() const { return blocks_; }
     // That it holds, and that sorting its cells takes besides.
     std::size_t bytes() const;
 
@@ -114,12 +121,14 @@ class CellTable {
     void grow();
     std::vector<std::uint32_t> slots_;  // open addressing: place in cubes_ + 1, or 0
     std::vector<Cube> cubes_;
-    std::vector<Block> blocks_;
-    std::vector<CellSums> cells_;
+    Grown<Block> blocks_;
+    Grown<CellSums> cells_;
     std::size_t last_ = 0;  // the cube found last
 };
 
 using SortedCells = boost::container::vector<CellSums>;
+// Where cells lie in their tables.
+using CellPlaces = boost::container::vector<const CellSums*>;
 
 // Cells shared out over tables by their cubes, so that several threads may fill them, one per
 // table, and that neighbours are near one another in memory.
@@ -132,8 +141,8 @@ struct CellTables {
     std::array<CellTable, shard_count> shards;
     // In order, whatever the number of threads.
     void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool);
-    // All cells by ascending key.
-    SortedCells sorted(ThreadPool& pool) const;
+    // All cells by ascending key; as long as nothing is added.
+    CellPlaces sorted(ThreadPool& pool) const;
     std::size_t bytes() const;
 };
 
@@ -177,8 +186,9 @@ struct FusedCells {
     double cell_m = 0;
     SortedCells cells;
 };
-// Drops cells of stray readings.
-void drop_weak(FusedCells& fused, std::size_t frames, ThreadPool& pool);
+// Those that are no stray readings, of so many frames. Of noisy frames a fraction is left: the rest
+// is not copied.
+SortedCells strong_cells(const CellPlaces& cells, std::size_t frames, ThreadPool& pool);
 // Drops cells that the frames deny.
 void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool);
 // One step of moving least squares, then bins anew: readings spread to both sides of a surface by

@@ -21,18 +21,21 @@ struct Around {
     std::uint64_t cells = 0, count = 0, weight = 0;
 };
 
-// Calls visit(cell, around) for each cell. Each of the nine columns of three is a run of sorted
-// cells whose ends only move up, and the difference of two running sums is what it holds.
-template <class Visit>
-void visit_surroundings(const FusedCells& fused, ThreadPool& pool, const Visit& visit) {
-    const std::size_t n = fused.cells.size();
+// Calls visit(cell, around) for each of n cells, cell(i), by ascending key. Each of the nine
+// columns of three is a run of sorted cells whose ends only move up, and the difference of two
+// running sums is what it holds.
+template <class Cell, class Visit>
+void visit_surroundings(std::size_t n, ThreadPool& pool, const Cell& cell, const Visit& visit) {
     // Behind the last come more keys than a run has, above all.
     std::vector<std::uint64_t> key(n + 3, ~std::uint64_t{0}), count(n + 1), weight(n + 1);
-    for (std::size_t i = 0; i < n; ++i) {
-        key[i] = fused.cells[i].key;
-        count[i + 1] = count[i] + fused.cells[i].count;
-        weight[i + 1] = weight[i] + fused.cells[i].weight;
-    }
+    pool.each(n, fused_chunk, [&](std::size_t i) {
+        const CellSums& at = cell(i);
+        key[i] = at.key;
+        count[i + 1] = at.count;
+        weight[i + 1] = at.weight;
+    });
+    std::partial_sum(count.begin(), count.end(), count.begin());
+    std::partial_sum(weight.begin(), weight.end(), weight.begin());
     pool.run(n, fused_chunk, [&](std::uint64_t first, std::uint64_t last) {
         std::array<std::uint64_t, 9> lowest{};  // of each column, relative to the cell's key
         std::array<std::size_t, 9> lo{};
@@ -164,26 +167,33 @@ void bin_anew(FusedCells& fused, ThreadPool& pool) {
     for (std::size_t first = 0; first < cells.size(); first += part)
         parts.push_back(cells.subspan(first, std::min(part, cells.size() - first)));
     tables.add(parts, pool);
-    fused.cells = {};
-    fused.cells = tables.sorted(pool);
+    const CellPlaces sorted = tables.sorted(pool);
+    fused.cells = SortedCells(sorted.size(), boost::container::default_init);
+    pool.each(sorted.size(), fused_chunk, [&](std::size_t i) { fused.cells[i] = *sorted[i]; });
 }
 
 }  // namespace
 
-void drop_weak(FusedCells& fused, std::size_t frames, ThreadPool& pool) {
-    std::vector<std::uint8_t> drop(fused.cells.size());
-    visit_surroundings(fused, pool, [&](std::size_t i, const Around& all) {
-        const CellSums& cell = fused.cells[i];
+SortedCells strong_cells(const CellPlaces& cells, std::size_t frames, ThreadPool& pool) {
+    std::vector<std::uint8_t> weak(cells.size());
+    const auto cell_at = [&](std::size_t i) -> const CellSums& { return *cells[i]; };
+    visit_surroundings(cells.size(), pool, cell_at, [&](std::size_t i, const Around& all) {
+        const CellSums& cell = *cells[i];
         const auto around = static_cast<double>(all.cells - 1),
                    count = static_cast<double>(all.count - cell.count),
                    weight = static_cast<double>(all.weight - cell.weight);
         const bool lonely = around == 0 && cell.count == 1 && frames > 1;
         // Below a tenth of its surroundings by readings and by certainty.
-        const bool weak = around > 0 && 10.0 * cell.count < count / around &&
-                          10.0 * static_cast<double>(cell.weight) < weight / around;
-        drop[i] = lonely || weak;
+        const bool below = around > 0 && 10.0 * cell.count < count / around &&
+                           10.0 * static_cast<double>(cell.weight) < weight / around;
+        weak[i] = lonely || below;
     });
-    drop_cells(fused, drop);
+    std::vector<std::uint32_t> stay;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        if (weak[i] == 0) stay.push_back(static_cast<std::uint32_t>(i));
+    SortedCells strong(stay.size(), boost::container::default_init);
+    pool.each(stay.size(), fused_chunk, [&](std::size_t n) { strong[n] = *cells[stay[n]]; });
+    return strong;
 }
 
 void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool) {
@@ -207,7 +217,8 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
     const std::size_t n = fused.cells.size();
     std::vector<float> sigma(n);  // of the readings in and around each cell, metres
     std::vector<std::uint8_t> level_of(n);
-    visit_surroundings(fused, pool, [&](std::size_t i, const Around& around) {
+    const auto cell_at = [&](std::size_t i) -> const CellSums& { return fused.cells[i]; };
+    visit_surroundings(n, pool, cell_at, [&](std::size_t i, const Around& around) {
         const double s = least_depth_sigma * std::sqrt(65535 * static_cast<double>(around.count) /
                                                        static_cast<double>(around.weight));
         sigma[i] = static_cast<float>(s);

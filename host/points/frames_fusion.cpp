@@ -144,11 +144,11 @@ FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
     FusedCells fused;
     fused.cell_m = cell_m_;
     cells_->flush();
-    fused.cells = cells_->tables.sorted(cells_->pool);
-    cells_->tables = {};
     cells_->waiting = {};
+    const CellPlaces sorted = cells_->tables.sorted(cells_->pool);
     poll();
-    drop_weak(fused, cells_->viewpoints.size(), cells_->pool);
+    fused.cells = strong_cells(sorted, cells_->viewpoints.size(), cells_->pool);
+    cells_->tables = {};
     poll();
     drop_denied(fused, cells_->witnesses, cells_->pool);
     poll();
