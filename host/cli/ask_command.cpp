@@ -11,6 +11,7 @@
 #include "cli/print.h"
 #include "core/json.h"
 #include "core/listed.h"
+#include "core/numbered_object.h"
 #include "io/json_values.h"
 #include "io/text.h"
 #include "topple/ask.h"
@@ -54,8 +55,7 @@ struct Answer {
 };
 
 std::string object_text(const Scene& scene, std::int32_t id) {
-    const std::string& name = scene.objects[id].name;
-    return "object " + std::to_string(id) + (name.empty() ? "" : " (" + name + ")");
+    return numbered_object(scene.objects[id]);
 }
 std::string objects_text(const Scene& scene, const std::vector<std::int32_t>& ids) {
     std::vector<std::string> words;

@@ -43,17 +43,9 @@ std::string text_of(const Thing& thing, const Scene& scene) {
     return out;
 }
 
-const char* text_of(Change change) {
-    switch (change) {
-        case Change::came:
-            return "came";
-        case Change::moved:
-            return "moved";
-        case Change::gone:
-            return "gone";
-        default:
-            return nullptr;  // of what is known of the room, not of the room
-    }
+// Whether it is of the room, and not of what is known of it.
+bool is_of_the_room(Change change) {
+    return change == Change::came || change == Change::moved || change == Change::gone;
 }
 
 void print_changes(const LiveScene& found, double took_s) {
@@ -63,9 +55,8 @@ void print_changes(const LiveScene& found, double took_s) {
     print("%s, %s; %.1f s\n", io::counted(found.frames.size(), "frame").c_str(),
           io::counted(things, "thing").c_str(), took_s);
     for (const Thing& thing : found.things) {
-        const char* const change = text_of(thing.change);
-        if (!change) continue;
-        print("  %s: %s", change, text_of(thing, scene).c_str());
+        if (!is_of_the_room(thing.change)) continue;
+        print("  %s: %s", to_string(thing.change), text_of(thing, scene).c_str());
         if (thing.change == Change::moved) print(", by %.2f m", thing.moved_m);
         print("\n");
     }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/text.h"
+#include "points/caller_frames.h"
 #include "points/formats/frame_sequence.h"
 #include "topple/error.h"
 
@@ -52,15 +53,10 @@ bool GrowingFolder::read(Session& session, std::size_t most,
         const std::size_t n = known_.size();
         const auto frame = unless_unfinished(waits_for_, [&] { return frames->load_coloured(n); });
         if (!frame) break;
-        const Intrinsics& k = frames->intrinsics();
-        FrameView view;
-        view.depth = {frame->depth.data(), k.width, k.height};
-        if (!frame->rgb.empty())
-            view.colour = {reinterpret_cast<const Rgb*>(frame->rgb.data()), k.width, k.height};
         Known& known = known_.emplace_back();
         known.pose = frames->poses()[n];
         try {
-            known.frame = session.add(view, known.pose);
+            known.frame = session.add(view_of(*frame, frames->intrinsics()), known.pose);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
             told(error.what());

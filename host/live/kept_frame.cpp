@@ -68,13 +68,18 @@ KeptFrame::KeptFrame(const DepthFrame& frame, std::uint32_t width) : width_(widt
     colour_ = Packed(colour);
 }
 
-DepthFrame KeptFrame::frame() const {
+DepthFrame KeptFrame::depth_frame() const {
     DepthFrame out;
     const std::vector<std::uint8_t> bytes = depth_.unpacked();
     out.depth.resize(bytes.size() / 2);
     for (std::size_t n = 0; n < out.depth.size(); ++n)
         out.depth[n] = static_cast<std::uint16_t>(bytes[n] | bytes[out.depth.size() + n] << 8);
     to_values(out.depth, width_, 1);
+    return out;
+}
+
+DepthFrame KeptFrame::frame() const {
+    DepthFrame out = depth_frame();
     out.rgb = colour_.unpacked();
     to_values(out.rgb, std::size_t{3} * width_, 3);
     return out;

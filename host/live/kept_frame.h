@@ -26,7 +26,9 @@ class Packed {
 class KeptFrame {
   public:
     KeptFrame(const DepthFrame& frame, std::uint32_t width);
-    DepthFrame frame() const;  // with the identity for a pose
+    // With the identity for a pose; without its colours, or with them.
+    DepthFrame depth_frame() const;
+    DepthFrame frame() const;
     std::size_t bytes() const { return depth_.bytes() + colour_.bytes(); }
 
   private:

@@ -40,8 +40,6 @@ void use_best(std::vector<Match> matches, std::vector<std::size_t>& before_of,
     }
 }
 
-using Showed = std::map<FrameId, std::vector<std::int32_t>>;
-
 std::vector<Match> by_pixels(const Showed& before, const ShownObjects& now) {
     std::map<std::pair<std::int32_t, std::int32_t>, double> both;
     std::map<std::int32_t, double> of_before, of_now;
@@ -65,20 +63,19 @@ std::vector<Match> by_pixels(const Showed& before, const ShownObjects& now) {
     return out;
 }
 
-// Of the pixels that show each object, the share for which `is` holds. shows(frame): by pixel.
-template <class Shows, class Is>
-std::vector<double> shares(const ShownObjects& shown, std::size_t objects, const Shows& shows,
-                           const Is& is) {
+// Of the pixels that show each of so many objects, the share with that flag. showed: by pixel, of
+// some of the frames.
+std::vector<double> shares(std::size_t objects, const Showed& showed, const ShownObjects& shown,
+                           std::vector<bool> Shown::*flag) {
     std::vector<double> all(objects), some(objects);
     for (const auto& [frame, pixels] : shown) {
-        const std::vector<std::int32_t>* const object = shows(frame, pixels);
-        const std::vector<bool>& holds = is(pixels);
-        if (!object || holds.empty()) continue;
-        for (std::size_t n = 0; n < object->size(); ++n) {
-            const std::int32_t o = (*object)[n];
+        const auto of = showed.find(frame);
+        if (of == showed.end() || (pixels.*flag).empty()) continue;
+        for (std::size_t n = 0; n < of->second.size(); ++n) {
+            const std::int32_t o = of->second[n];
             if (o < 0) continue;
             ++all[static_cast<std::size_t>(o)];
-            some[static_cast<std::size_t>(o)] += holds[n];
+            some[static_cast<std::size_t>(o)] += (pixels.*flag)[n];
         }
     }
     for (std::size_t o = 0; o < objects; ++o) some[o] /= std::max(1.0, all[o]);
@@ -110,16 +107,10 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
         taken[was] = true;
     }
     use_best(by_pixels(showed_, shown), before_of, taken);
-    const std::vector<double> gone = shares(
-        shown, before_.size(),
-        [&](FrameId frame, const Shown&) {
-            const auto at = showed_.find(frame);
-            return at == showed_.end() ? nullptr : &at->second;
-        },
-        [](const Shown& pixels) -> const std::vector<bool>& { return pixels.gone; });
-    const std::vector<double> came = shares(
-        shown, count, [](FrameId, const Shown& pixels) { return &pixels.object; },
-        [](const Shown& pixels) -> const std::vector<bool>& { return pixels.came; });
+    Showed shows;
+    for (const auto& [frame, pixels] : shown) shows[frame] = pixels.object;
+    const std::vector<double> gone = shares(before_.size(), showed_, shown, &Shown::gone);
+    const std::vector<double> came = shares(count, shows, shown, &Shown::came);
 
     const auto moved_m = [&](std::size_t b, std::size_t n) {
         return length(minus(scene.objects[n].box_middle_m, before_[b].middle_m));
@@ -175,8 +166,7 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
             out.push_back({.id = before_[b].id,
                            .change = gone[b] >= most_of_it ? Change::gone : Change::lost});
     before_ = std::move(now);
-    showed_.clear();
-    for (const auto& [frame, pixels] : shown) showed_[frame] = pixels.object;
+    showed_ = std::move(shows);
     return out;
 }
 

@@ -21,6 +21,7 @@ struct Shown {
 };
 // By frame: the same pixels whatever was made of its pose, and of the others, since.
 using ShownObjects = std::map<FrameId, Shown>;
+using Showed = std::map<FrameId, std::vector<std::int32_t>>;  // the objects alone
 
 // Which objects of one scene are which of the one before: those that most of the same pixels show;
 // of what then is left, what came and is like what has gone.
@@ -37,8 +38,8 @@ class KnownThings {
         std::vector<ThingId> stands_on;  // ascending
         std::string category;
     };
-    std::vector<Before> before_;                           // by object of the scene before
-    std::map<FrameId, std::vector<std::int32_t>> showed_;  // before
+    std::vector<Before> before_;  // by object of the scene before
+    Showed showed_;
     ThingId next_ = 1;
 };
 

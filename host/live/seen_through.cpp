@@ -40,7 +40,6 @@ bool look_alike(const Camera& a, const Camera& b) {
     return cosine >= most_turned_cosine && moved <= most_moved_m;
 }
 
-// The nearest reading of the nine around each pixel; 0 where one of them is missing.
 std::vector<std::uint16_t> nearest_around(const Intrinsics& k, const DepthFrame& frame) {
     const std::size_t width = k.width, height = k.height;
     std::vector<std::uint16_t> out(frame.depth.size(), 0);
@@ -79,34 +78,36 @@ Look look_at(const Intrinsics& k, const Camera& camera, const std::vector<std::u
 
 }  // namespace
 
-std::vector<Gone> seen_through(const Intrinsics& intrinsics, std::span<const DepthFrame> frames,
-                               const Asked& asked, ThreadPool& threads) {
-    const Intrinsics& k = intrinsics;
+Looks::Looks(const Intrinsics& intrinsics, std::span<const DepthFrame> frames, ThreadPool& threads)
+    : intrinsics_(intrinsics), frames_(frames), threads_(threads), nearest_(frames.size()) {
+    threads_.each(frames_.size(), 1,
+                  [&](std::size_t n) { nearest_[n] = nearest_around(intrinsics_, frames_[n]); });
+}
+
+std::vector<Gone> Looks::seen_through(const Asked& asked) const {
+    const Intrinsics& k = intrinsics_;
     std::vector<Camera> cameras;
-    for (const DepthFrame& frame : frames) cameras.emplace_back(frame.camera_to_world);
-    std::vector<std::vector<std::uint16_t>> nearest(frames.size());
-    threads.each(frames.size(), 1,
-                 [&](std::size_t n) { nearest[n] = nearest_around(k, frames[n]); });
+    for (const DepthFrame& frame : frames_) cameras.emplace_back(frame.camera_to_world);
     const auto through_at = [&](const std::vector<std::size_t>& others,
                                 const std::array<float, 3>& place) {
         int looks = 0, through = 0;
         for (const std::size_t other : others) {
-            const Look look = look_at(k, cameras[other], nearest[other], place);
+            const Look look = look_at(k, cameras[other], nearest_[other], place);
             if (look == Look::none) continue;
             through += look == Look::through;
             if (++looks == most_looks) break;
         }
         return static_cast<std::uint8_t>(2 * through > looks ? through : 0);
     };
-    std::vector<Gone> out(frames.size());
-    threads.each(frames.size(), 1, [&](std::size_t n) {
+    std::vector<Gone> out(frames_.size());
+    threads_.each(frames_.size(), 1, [&](std::size_t n) {
         const auto [first, last] = asked(n);
         std::vector<std::size_t> others;
         for (std::size_t other = last; other-- > first && others.size() < most_asked;)
             if (look_alike(cameras[n], cameras[other])) others.push_back(other);
         for (std::uint32_t v = 0; v < k.height; ++v) {
             for (std::uint32_t u = 0; u < k.width; ++u) {
-                const std::uint16_t stored = frames[n].depth[std::size_t{v} * k.width + u];
+                const std::uint16_t stored = frames_[n].depth[std::size_t{v} * k.width + u];
                 if (stored == 0) continue;
                 const double z = stored / k.depth_scale;
                 const auto place = cameras[n].world(static_cast<float>(z * (u - k.cx) / k.fx),

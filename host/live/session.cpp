@@ -36,24 +36,13 @@ std::string name_of(FrameId frame) {
     return "frame " + std::to_string(frame);
 }
 
-// A frame of the caller's as parse() would take it: checked, its colours as the depth camera sees
-// them.
-DepthFrame taken(const Intrinsics& k, const std::optional<Intrinsics>& colour,
-                 const FrameView& frame, const Mat4& pose, const std::string& source) {
-    FramesView view;
-    view.intrinsics = k;
-    view.colour_intrinsics = colour;
-    view.camera_to_world = {pose};
-    view.images = {frame};
-    view.source = source;
-    return CallerFrames(view).load_coloured(0);
-}
-
-FrameView view_of(const DepthFrame& frame, const Intrinsics& k) {
-    FrameView out;
-    out.depth = {frame.depth.data(), k.width, k.height};
-    if (!frame.rgb.empty())
-        out.colour = {reinterpret_cast<const Rgb*>(frame.rgb.data()), k.width, k.height};
+FramesView one_frame(const Intrinsics& k, const std::optional<Intrinsics>& colour,
+                     const FrameView& frame, const Mat4& pose) {
+    FramesView out;
+    out.intrinsics = k;
+    out.colour_intrinsics = colour;
+    out.camera_to_world = {pose};
+    out.images = {frame};
     return out;
 }
 
@@ -86,7 +75,10 @@ class Session::State {
     }
 
     FrameId add(const FrameView& view, const Mat4& pose) {
-        const DepthFrame frame = taken(k_, colour_, view, pose, name_of(next_));
+        FramesView given = one_frame(k_, colour_, view, pose);
+        given.source = name_of(next_);
+        // As parse() takes it: checked, its colours as the depth camera sees them.
+        const DepthFrame frame = CallerFrames(given).load_coloured(0);
         if (std::ranges::all_of(frame.depth, [](std::uint16_t d) { return d == 0; }))
             throw Error(ErrorKind::input, name_of(next_) + ": it has no readings");
         Checksum sum;
@@ -141,14 +133,14 @@ class Session::State {
             throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
         auto found = std::make_shared<LiveScene>();
         for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
-        if (const auto known = scene(); known && changes == parsed_changes_) {
-            *found = *known;
+        const auto last = scene();
+        if (last && changes == parsed_changes_) {
+            *found = *last;
             std::erase_if(found->things, [](const Thing& t) { return t.object < 0; });
             for (Thing& thing : found->things) thing = {.id = thing.id, .object = thing.object};
             publish(found);
             return found;
         }
-        const auto last = scene();
         const Passed passed = passed_through(frames, last ? last->frames.back() + 1 : 0);
         FramesView view;
         view.intrinsics = k_;
@@ -157,7 +149,7 @@ class Session::State {
         DepthFrame current;
         view.image = [&](std::size_t n) {
             current = frames.at(found->frames[n]).frame->frame();
-            if (options_.forget_gone) live::Coarse(k_).leave_out(passed.gone[n], current);
+            if (options_.forget_gone) coarse_.leave_out(passed.gone[n], current);
             return view_of(current, k_);
         };
         found->result = std::make_shared<const ParseResult>(parse(view, options_.parse));
@@ -180,12 +172,7 @@ class Session::State {
             labeller = labeller_;
         }
         if (!scene) throw Error(ErrorKind::usage, "session: nothing is known before update()");
-        FramesView frames;
-        frames.intrinsics = k_;
-        frames.colour_intrinsics = colour_;
-        frames.camera_to_world = {pose};
-        frames.images = {view};
-        const FrameLabels found = labeller->label(frames, 0, threads_);
+        const FrameLabels found = labeller->label(one_frame(k_, colour_, view, pose), 0, threads_);
         ThingLabels out{found.width, found.height, {}};
         out.thing.reserve(found.object.size());
         for (const std::int32_t o : found.object)
@@ -233,22 +220,18 @@ class Session::State {
         std::vector<live::Gone> gone, came;
     };
     Passed passed_through(const Frames& frames, FrameId first_new) const {
-        const live::Coarse coarse(k_);
         Passed out;
         std::size_t old = 0;
         for (const auto& [frame, kept] : frames) {
             old += frame < first_new;
-            out.seen.push_back(coarse.of(kept.frame->frame()));
+            out.seen.push_back(coarse_.of(kept.frame->depth_frame()));
             out.seen.back().camera_to_world = kept.pose;
         }
-        ThreadPool& threads = options_.parse.device->threads();
+        const live::Looks looks(coarse_.intrinsics(), out.seen, options_.parse.device->threads());
         const std::size_t all = out.seen.size();
-        out.gone = live::seen_through(
-            coarse.intrinsics(), out.seen, [&](std::size_t n) { return std::pair(n + 1, all); },
-            threads);
-        out.came = live::seen_through(
-            coarse.intrinsics(), out.seen,
-            [&](std::size_t n) { return std::pair(std::size_t{0}, n < old ? 0 : old); }, threads);
+        out.gone = looks.seen_through([&](std::size_t n) { return std::pair(n + 1, all); });
+        out.came = looks.seen_through(
+            [&](std::size_t n) { return std::pair(std::size_t{0}, n < old ? 0 : old); });
         return out;
     }
     // What some of the frames show.
@@ -260,7 +243,7 @@ class Session::State {
                 frames, [&](const auto& kept) { return number_of(kept.first) % every == 0; }));
         };
         while (telling() > most_telling) every *= 2;
-        const Intrinsics k = live::Coarse(k_).intrinsics();
+        const Intrinsics& k = coarse_.intrinsics();
         const auto flags = [&](const live::Gone& pixels) {
             std::vector<bool> out(std::size_t{k.width} * k.height);
             for (const live::GonePixel& p : pixels) out[std::size_t{p.v} * k.width + p.u] = true;
@@ -270,10 +253,8 @@ class Session::State {
         std::size_t n = 0;
         for (auto at = frames.begin(); at != frames.end(); ++at, ++n) {
             if (number_of(at->first) % every != 0) continue;
-            FramesView view;
-            view.intrinsics = k;
-            view.camera_to_world = {at->second.pose};
-            view.images = {view_of(passed.seen[n], k)};
+            const FramesView view =
+                one_frame(k, std::nullopt, view_of(passed.seen[n], k), at->second.pose);
             out[at->first] = {labeller.label(view, 0, threads_).object, flags(passed.gone[n]),
                               flags(passed.came[n])};
         }
@@ -287,6 +268,7 @@ class Session::State {
     }
 
     const Intrinsics k_;
+    const live::Coarse coarse_{k_};
     const std::optional<Intrinsics> colour_;
     SessionOptions options_;
     unsigned threads_ = 0;

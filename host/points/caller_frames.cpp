@@ -34,6 +34,14 @@ io::ColourImage image_of(const ImageView<Rgb>& from) {
 
 }  // namespace
 
+FrameView view_of(const DepthFrame& frame, const Intrinsics& k) {
+    FrameView out;
+    out.depth = {frame.depth.data(), k.width, k.height};
+    if (!frame.rgb.empty())
+        out.colour = {reinterpret_cast<const Rgb*>(frame.rgb.data()), k.width, k.height};
+    return out;
+}
+
 CallerFrames::CallerFrames(const FramesView& frames)
     : from_(frames), source_(frames.source.empty() ? "frames" : frames.source) {
     if (!from_.images.empty() && from_.image)

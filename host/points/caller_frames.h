@@ -11,6 +11,9 @@
 
 namespace topple {
 
+// A frame as it is given to be parsed; it must stay.
+FrameView view_of(const DepthFrame& frame, const Intrinsics& intrinsics);
+
 // Depth frames in the caller's memory, each checked before anything relies on it: all at once where
 // all are there, else one by one as they come. What they give is what FrameSequence gives of the
 // same in files.

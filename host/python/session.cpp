@@ -13,11 +13,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-const char* to_string(Change change) {
-    constexpr const char* names[] = {"none", "found", "came", "moved", "changed", "lost", "gone"};
-    return names[static_cast<std::size_t>(change)];
-}
-
 // Whether the interpreter ends, or a signal such as Ctrl-C came: then Python's error is set.
 class Stopped {
   public:

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/numbered_object.h"
+#include "io/length_text.h"
 #include "io/text.h"
 #include "physics/drop.h"
 #include "result/explanations.h"
@@ -17,9 +19,6 @@
 namespace topple {
 namespace {
 
-std::string length(double metres) {
-    return metres < 0.1 ? io::two_digits(100 * metres) + " cm" : io::two_digits(metres) + " m";
-}
 std::string energy(double joules) {
     return joules < 0.01 && joules > 5e-7 ? io::two_digits(1000 * joules) + " mJ"
                                           : io::two_digits(joules) + " J";
@@ -29,12 +28,6 @@ std::string compass(double azimuth_deg) {
     constexpr std::array names{"north", "north-east", "east", "south-east",
                                "south", "south-west", "west", "north-west"};
     return names[static_cast<std::size_t>(std::lround(azimuth_deg / 45)) % names.size()];
-}
-
-// "object 3", or "object 3 (fridge)".
-std::string numbered_object(const Object& o) {
-    const std::string text = "object " + std::to_string(o.id);
-    return o.name.empty() ? text : text + " (" + o.name + ")";
 }
 
 constexpr const char* floor = "the floor";
@@ -118,25 +111,25 @@ struct Sentence {
         if (off == floor && what(scene, parts, from.instability.onto) == floor &&
             why.drop_m < step_m) {
             return "Slides " + to() + "on the floor at " + barrier() + ", over " +
-                   length(why.way_m) + ", to where it stands " + length(why.drop_m) +
-                   " lower, and releases " + energy(why.S_J) + ".";
+                   io::length_text(why.way_m) + ", to where it stands " +
+                   io::length_text(why.drop_m) + " lower, and releases " + energy(why.S_J) + ".";
         }
         return "Slides " + to() + "off " + off + " at " + barrier() + ", over " +
-               length(why.way_m) + "; falls " + dropped() + " and releases " + energy(why.S_J) +
-               ".";
+               io::length_text(why.way_m) + "; falls " + dropped() + " and releases " +
+               energy(why.S_J) + ".";
     }
     std::string tips() const {
         const bool stands = from.tipping.margin_m > 0;
         std::string text;
         if (!why.edge_m.empty() && !stands && why.W_J > 0) {
             // It would come to rest no lower there: the first step that releases is another one.
-            text = "Its centre of mass is " + length(-from.tipping.margin_m) +
+            text = "Its centre of mass is " + io::length_text(-from.tipping.margin_m) +
                    " beyond the edge of what is seen to carry it, but falling there it would rest "
                    "no lower. Tips over its " +
                    edge() + " at " + barrier();
         } else if (!why.edge_m.empty() && !stands) {
             text = "Falls " + to() + "as it stands: its centre of mass is " +
-                   length(-from.tipping.margin_m) + " beyond the edge of what carries it";
+                   io::length_text(-from.tipping.margin_m) + " beyond the edge of what carries it";
         } else if (!why.edge_m.empty()) {
             text = "Tips over its " + edge() + " at " + barrier();
         } else {
@@ -207,10 +200,10 @@ struct Sentence {
         const Vec3 &a = why.edge_m[0], &b = why.edge_m[1];
         const double size = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
         if (size <= 2.5 * scene.voxel_size_m) return side + "rim";
-        return side + "edge, " + length(size) + " long,";
+        return side + "edge, " + io::length_text(size) + " long,";
     }
     std::string dropped() const {
-        return length(why.drop_m) + " to " + what(scene, parts, from.instability.onto);
+        return io::length_text(why.drop_m) + " to " + what(scene, parts, from.instability.onto);
     }
 };
 
@@ -267,7 +260,7 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
                               (kind ? std::string(", ") + kind->words.push : "") +
                               ", without a margin";
     const std::string where =
-        "at its top, " + length(what.hold.height_m) + " above what it stands on";
+        "at its top, " + io::length_text(what.hold.height_m) + " above what it stands on";
     if (bolted && !light) return text + ": " + where + ", it must be held against " + holds + ".";
     const std::string rated = "rated for " + rated_for(what.hold.force_N) + " or more (";
     if (what.fasten.wall && std::max(object.size_m[0], object.size_m[1]) > one_strap_m)
@@ -287,7 +280,8 @@ std::string plain_advice(const Object& object, const Suggestion& what) {
             return "Look whether it stands firm: what the scan shows of its support would hardly "
                    "hold it, and its risk follows from that.";
         case Suggestion::Kind::move: {
-            std::string text = "Move it " + length(std::hypot(what.move_m[0], what.move_m[1])) +
+            std::string text = "Move it " +
+                               io::length_text(std::hypot(what.move_m[0], what.move_m[1])) +
                                " to the " + compass(azimuth_deg(what.move_m));
             if (!object.fall.takes_along.empty()) text += ", with what stands on it";
             return text + ": its risk falls from " + joules(safety::largest_risk(object).risk_J) +

@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "core/listed.h"
+#include "core/numbered_object.h"
 #include "core/sort_unique.h"
+#include "io/length_text.h"
 #include "io/text.h"
 #include "safety/footholds.h"
 #include "topple/error.h"
@@ -37,15 +39,10 @@ std::string named(const Scene& scene, const Ids& ids) {
     std::vector<std::string> words;
     for (const std::int32_t id : ids) {
         const Object& o = scene.objects[id];
-        std::string word = o.grounded ? "the building" : "object " + std::to_string(id);
-        if (!o.name.empty() && !o.grounded) word += " (" + o.name + ")";
+        std::string word = o.grounded ? "the building" : numbered_object(o);
         if (std::ranges::find(words, word) == words.end()) words.push_back(std::move(word));
     }
     return listed(words, "and");
-}
-
-std::string distance_text(double metres) {
-    return metres < 0.1 ? io::two_digits(100 * metres) + " cm" : io::two_digits(metres) + " m";
 }
 
 // The objects among `ids` in groups that carry one another in a ring, and each other one alone, so
@@ -171,7 +168,7 @@ class Holding {
         } else {
             out.beyond_m = beyond;
             out.reason = who + " loses " + named(scene_, out.lost) + ": its centre of mass lies " +
-                         distance_text(beyond) + " outside of what is left to stand on, " +
+                         io::length_text(beyond) + " outside of what is left to stand on, " +
                          named(scene_, out.left);
         }
         out.reason[0] = 'O';

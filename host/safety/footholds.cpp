@@ -16,10 +16,6 @@
 namespace topple::safety {
 namespace {
 
-Vec3 row_of(const Mat4& m, std::size_t row) {
-    return {m[4 * row], m[4 * row + 1], m[4 * row + 2]};
-}
-
 // A voxel in its column, counted from the lowest one.
 struct ColumnCell {
     std::int32_t i, j, k, object;
@@ -30,23 +26,19 @@ struct VoxelColumns {
     std::vector<ColumnCell> cells;
     Vec3 lowest{};  // centre of voxel (0, 0, 0), along the room's axes
 
-    explicit VoxelColumns(const Scene& scene) {
+    VoxelColumns(const Scene& scene, const Rotation& axes) {
         const SolidVoxels& solid = scene.solid;
-        const std::array axes{row_of(scene.manhattan_from_input, 0),
-                              row_of(scene.manhattan_from_input, 1),
-                              row_of(scene.manhattan_from_input, 2)};
-        const auto turned = [&](std::size_t n) {
-            const Vec3 at{solid.x[n], solid.y[n], solid.z[n]};
-            return Vec3{dot(axes[0], at), dot(axes[1], at), dot(axes[2], at)};
+        const auto place = [&](std::size_t n) {
+            return turned(axes, {solid.x[n], solid.y[n], solid.z[n]});
         };
         lowest.fill(std::numeric_limits<double>::infinity());
         for (std::size_t n = 0; n < solid.x.size(); ++n) {
-            const Vec3 at = turned(n);
+            const Vec3 at = place(n);
             for (std::size_t a = 0; a < 3; ++a) lowest[a] = std::min(lowest[a], at[a]);
         }
         cells.reserve(solid.x.size());
         for (std::size_t n = 0; n < solid.x.size(); ++n) {
-            const Vec3 at = turned(n);
+            const Vec3 at = place(n);
             const auto index = [&](std::size_t a) {
                 return static_cast<std::int32_t>(
                     std::lround((at[a] - lowest[a]) / scene.voxel_size_m));
@@ -73,13 +65,11 @@ Footholds::Polygon hull_of_columns(const Footholds::Polygon& middles, double vox
 }  // namespace
 
 Footholds::Footholds(const Scene& scene)
-    : along_x_(row_of(scene.manhattan_from_input, 0)),
-      along_y_(row_of(scene.manhattan_from_input, 1)),
-      of_(scene.supports.size()) {
+    : axes_(rotation_of(scene.manhattan_from_input)), of_(scene.supports.size()) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> support_of;
     for (std::size_t n = 0; n < scene.supports.size(); ++n)
         support_of[{scene.supports[n].supporter, scene.supports[n].supported}] = n;
-    const VoxelColumns columns(scene);
+    const VoxelColumns columns(scene, axes_);
     std::vector<FootColumns> standing(scene.supports.size());
     for (std::size_t n = 1; n < columns.cells.size(); ++n) {
         const ColumnCell &below = columns.cells[n - 1], &above = columns.cells[n];
@@ -104,7 +94,7 @@ double Footholds::outside_m(std::span<const std::size_t> supports, const Vec3& p
     for (const std::size_t n : supports)
         corners.insert(corners.end(), of_[n].begin(), of_[n].end());
     const Polygon hull = physics::convex_polygon(std::move(corners));
-    return -physics::footing(hull, dot(along_x_, place), dot(along_y_, place)).margin_m;
+    return -physics::footing(hull, dot(axes_[0], place), dot(axes_[1], place)).margin_m;
 }
 
 }  // namespace topple::safety

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/rotation.h"
 #include "topple/scene.h"
 
 namespace topple::safety {
@@ -28,7 +29,7 @@ class Footholds {
     double outside_m(std::span<const std::size_t> supports, const Vec3& place) const;
 
   private:
-    Vec3 along_x_, along_y_;  // the room's axes
+    Rotation axes_;  // the room's
     std::vector<Polygon> of_;
 };
 

@@ -30,6 +30,11 @@ enum class Change : std::uint8_t {
     gone,     // its place was seen to be free since
 };
 
+inline const char* to_string(Change change) {
+    constexpr const char* names[] = {"none", "found", "came", "moved", "changed", "lost", "gone"};
+    return names[static_cast<std::size_t>(change)];
+}
+
 struct Thing {
     ThingId id = 0;            // 0: the building
     std::int32_t object = -1;  // its place in Scene::objects; -1: it is lost or gone

@@ -25,7 +25,7 @@ from ._arrays import channels as _channels, columns as _columns, has_rows as _ha
 from ._ask import FallsWithout, Holder, Unheld
 from ._device import open_device
 from ._frames import Frames as _Frames
-from ._options import named as _named, option as _option
+from ._options import named as _named, option as _option, options as _options_of
 from ._program import generate
 from ._removal import RemovalOrder
 from ._session import LiveScene, Session, Thing
@@ -376,15 +376,11 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
     are those of `topple parse --help-all`.
     """
-    options = _topple.Options()
     given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
              'density_kg_m3': density_kg_m3, 'friction': friction, 'contents_kg_m3': contents_kg_m3, 'walks': walks,
              'wind_m_s': wind_m_s, 'wind_from_deg': wind_from_deg, 'pga_m_s2': pga_m_s2,
              'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'stability_level': stability_level, 'grouping_time_s': grouping_time_s, 'tile_m': tile_m}
-    if disturbances is not None:
-        given['disturbances'] = disturbances
-    for option, value in given.items():
-        setattr(options, option, _option(option, value))
+    options = _options_of(disturbances, given)
     device, viewpoints = _option('device', device), []
     if isinstance(source, (str, os.PathLike)) or frames is not None or not _has_rows(viewpoint):
         viewpoint = _option('viewpoint', viewpoint)

@@ -7,7 +7,7 @@ import math
 import operator
 
 from ._arrays import usage
-from ._topple import Device
+from ._topple import Device, Options
 
 
 def _number(value):
@@ -104,3 +104,13 @@ def option(name, value):
         return check(value)
     except (TypeError, ValueError, OverflowError):
         raise usage(f'{name}: expected {words}, not {value!r}'[:300]) from None
+
+
+def options(disturbances, given):
+    """The library's options of a parse: what is given, by name; disturbances None: all."""
+    out = Options()
+    if disturbances is not None:
+        given = {**given, 'disturbances': disturbances}
+    for name, value in given.items():
+        setattr(out, name, option(name, value))
+    return out

@@ -9,7 +9,7 @@ from . import _topple
 from ._arrays import usage
 from ._device import open_device
 from ._frames import colour_image, depth_image, poses as _poses
-from ._options import option
+from ._options import option, options
 from .stages import camera
 
 
@@ -40,13 +40,8 @@ class Session:
     def __init__(self, intrinsics, *, device=None, voxel_m=0.0, up=None, disturbances=None, seed=1, density_kg_m3=700.0, friction=0.3,
                  tolerable_J=0.1, wind_m_s=12.0, forget_gone=True, max_frame_bytes=2_000_000_000):
         self._camera = camera(intrinsics, 'intrinsics')
-        self._options = _topple.Options()
-        given = {'voxel_m': voxel_m, 'up': up, 'seed': seed, 'density_kg_m3': density_kg_m3, 'friction': friction,
-                 'tolerable_J': tolerable_J, 'wind_m_s': wind_m_s}
-        if disturbances is not None:
-            given['disturbances'] = disturbances
-        for name, value in given.items():
-            setattr(self._options, name, option(name, value))
+        self._options = options(disturbances, {'voxel_m': voxel_m, 'up': up, 'seed': seed, 'density_kg_m3': density_kg_m3, 'friction': friction,
+                                               'tolerable_J': tolerable_J, 'wind_m_s': wind_m_s})
         device = option('device', device)
         self._device = open_device(device) if isinstance(device, str) else device
         self._forget_gone = bool(forget_gone)

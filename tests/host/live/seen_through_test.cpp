@@ -26,8 +26,9 @@ DepthFrame frame(std::uint16_t board_mm, double x_m = 0) {
 
 std::vector<Gone> gone(const std::vector<DepthFrame>& frames) {
     ThreadPool threads(2);
-    return seen_through(
-        k, frames, [&](std::size_t n) { return std::pair(n + 1, frames.size()); }, threads);
+    return Looks(k, frames, threads).seen_through([&](std::size_t n) {
+        return std::pair(n + 1, frames.size());
+    });
 }
 
 TEST(SeenThrough, WhatLaterFramesSeeBehindHasGone) {
