@@ -63,6 +63,16 @@ void print_changes(const LiveScene& found, double took_s) {
     std::fflush(stdout);
 }
 
+// What came and is not in the output, at the end; empty: nothing.
+std::string missing_from(const live::GrowingFolder& folder, const std::string& out) {
+    if (folder.damaged() > 0)
+        return folder.first_damaged() + "; " + io::counted(folder.damaged(), "damaged image") +
+               " of " + std::to_string(folder.images()) + " left out of " + out;
+    if (!folder.waits_for().empty())
+        return folder.waits_for() + "; what came since is not in " + out;
+    return {};
+}
+
 int run(LiveArguments& a) {
     constexpr auto pause = std::chrono::milliseconds(100);
     constexpr std::size_t most_at_once = 500;
@@ -75,32 +85,46 @@ int run(LiveArguments& a) {
     io::check_not_replaced(a.folder, a.out);
     a.options.parse.device = device::open_device(a.backend, a.threads);
     a.options.parse.cancelled = [] { return interrupted() != 0; };
+    a.options.source = a.folder;
     OutputOptions output;
     output.threads = a.threads;
     output.cancelled = a.options.parse.cancelled;
     output.command = {"topple", "parse", a.folder, "-o", a.out};
+    if (!a.quiet)
+        print("following %s, with results in %s; it ends %s\n", a.folder.c_str(), a.out.c_str(),
+              a.idle_s
+                  ? ("after " + io::short_number(*a.idle_s) + " s without anything new").c_str()
+                  : "with Ctrl-C");
+    std::fflush(stdout);
 
     live::GrowingFolder folder(a.folder);
     std::unique_ptr<Session> session;
+    std::size_t written = 0;  // frames that the output is of
     auto last = Clock::now();
     std::string said;
-    const auto told = [&](const char* line) {
-        if (!a.quiet) print_to(stderr, "%s; it is left out\n", line);
+    live::GrowingFolder::Reading reading;
+    reading.most = most_at_once;
+    reading.told = [&](const std::string& line) {
+        print_to(stderr, "%s; it is left out\n", line.c_str());
     };
     try {
         while (interrupted() == 0) {
             if (!session)
                 if (const auto intrinsics = folder.intrinsics())
                     session = std::make_unique<Session>(*intrinsics, std::nullopt, a.options);
-            if (session && folder.read(*session, most_at_once, told)) {
+            if (session && folder.read(*session, reading)) {
                 const auto start = Clock::now();
                 const auto found = session->update();
-                write_outputs(*found->result, a.out, output);
+                write_outputs(*found, a.out, output);
+                written = found->frames.size();
                 if (!a.quiet) print_changes(*found, since_s(start));
                 last = Clock::now();
+                reading.is_last = false;
                 continue;
             }
-            if (a.idle_s && since_s(last) >= *a.idle_s) break;
+            if (reading.is_last) break;
+            reading.is_last = a.idle_s && since_s(last) >= *a.idle_s;
+            if (reading.is_last) continue;
             if (!a.quiet && since_s(last) > patience_s && !folder.waits_for().empty() &&
                 folder.waits_for() != said) {
                 said = folder.waits_for();
@@ -111,10 +135,18 @@ int run(LiveArguments& a) {
     } catch (const Error&) {
         if (interrupted() == 0) throw;
     }
-    if (interrupted() != 0) return interrupted_exit();
-    if (!session || !session->scene())
-        throw Error(ErrorKind::input,
-                    folder.waits_for().empty() ? a.folder + ": no frame came" : folder.waits_for());
+    if (interrupted() != 0) {
+        if (written == 0) return interrupted_exit();
+        print_to(stderr, "topple: interrupted; %s is of %s\n", a.out.c_str(),
+                 io::counted(written, "frame").c_str());
+        return 128 + interrupted();
+    }
+    if (written == 0)
+        throw Error(ErrorKind::input, folder.damaged() > 0         ? folder.first_damaged()
+                                      : folder.waits_for().empty() ? a.folder + ": no frame came"
+                                                                   : folder.waits_for());
+    if (const std::string missing = missing_from(folder, a.out); !missing.empty())
+        throw Error(ErrorKind::input, missing);
     return 0;
 }
 
@@ -140,8 +172,10 @@ Command add_live(CLI::App& app) {
     app.add_flag_function(
         "--keep-gone", [a](std::int64_t) { a->options.forget_gone = false; },
         "Count readings, too, at places that later frames see through");
-    app.add_option("--idle", a->idle_s,
-                   "Seconds without anything new after which it ends (default: at Ctrl-C)")
+    app.add_option(
+           "--idle", a->idle_s,
+           "Seconds without anything new after which it ends (default: at Ctrl-C); exit code 1\n"
+           "where images that came are not in the results")
         ->check(number_above_0);
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_flag("--quiet", a->quiet, "Print errors only");

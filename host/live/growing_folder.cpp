@@ -2,6 +2,7 @@
 #include "live/growing_folder.h"
 
 #include <map>
+#include <system_error>
 #include <utility>
 
 #include "io/text.h"
@@ -32,8 +33,43 @@ std::optional<Intrinsics> GrowingFolder::intrinsics() {
                              [&] { return io::FrameSequence::open(folder_).intrinsics(); });
 }
 
-bool GrowingFolder::read(Session& session, std::size_t most,
-                         const std::function<void(const char*)>& told) {
+GrowingFolder::Stamps GrowingFolder::stamps_of(const io::FrameSequence& frames, std::size_t image) {
+    Stamps out;
+    for (const std::filesystem::path& file : frames.files(image)) {
+        std::error_code no_size, no_time;  // it may be gone by now
+        const auto size = std::filesystem::file_size(file, no_size);
+        const auto time = std::filesystem::last_write_time(file, no_time);
+        out.emplace_back(no_size ? 0 : size,
+                         no_time ? std::filesystem::file_time_type::min() : time);
+    }
+    return out;
+}
+
+// Of the image that can't be read: programs write one after the other, so that it is not being
+// written where one behind it is whole and it has not changed for a while.
+bool GrowingFolder::is_damaged(const io::FrameSequence& frames, std::size_t image) {
+    Stamps now = stamps_of(frames, image);
+    if (now != unread_) {
+        unread_ = std::move(now);
+        unread_since_ = Clock::now();
+        return false;
+    }
+    if (Clock::now() - unread_since_ < patience_) return false;
+    std::string why;
+    for (std::size_t n = image + 1; n < frames.size(); ++n)
+        if (unless_unfinished(why, [&] { return frames.load(n); })) return true;
+    return false;
+}
+
+void GrowingFolder::leave_out_damaged(const Reading& how) {
+    known_.emplace_back();
+    unread_.clear();
+    if (damaged_++ == 0) first_damaged_ = waits_for_;
+    if (how.told) how.told(waits_for_);
+    waits_for_.clear();
+}
+
+bool GrowingFolder::read(Session& session, const Reading& how) {
     waits_for_.clear();
     const auto frames =
         unless_unfinished(waits_for_, [&] { return io::FrameSequence::open(folder_); });
@@ -48,21 +84,27 @@ bool GrowingFolder::read(Session& session, std::size_t most,
         corrected[*known_[n].frame] = known_[n].pose = frames->poses()[n];
     }
     session.correct(corrected);
-    const std::size_t before = known_.size();
-    while (known_.size() < frames->size() && known_.size() < before + most) {
+    std::size_t added = 0;
+    while (known_.size() < frames->size() && added < how.most) {
         const std::size_t n = known_.size();
         const auto frame = unless_unfinished(waits_for_, [&] { return frames->load_coloured(n); });
-        if (!frame) break;
+        if (!frame) {
+            if (!how.is_last && !is_damaged(*frames, n)) break;
+            leave_out_damaged(how);
+            continue;
+        }
+        unread_.clear();
         Known& known = known_.emplace_back();
         known.pose = frames->poses()[n];
         try {
             known.frame = session.add(view_of(*frame, frames->intrinsics()), known.pose);
+            ++added;
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
-            told(error.what());
+            if (how.told) how.told(io::path_text(frames->files(n).front()) + ": " + error.what());
         }
     }
-    return !corrected.empty() || known_.size() > before;
+    return !corrected.empty() || added > 0;
 }
 
 }  // namespace topple::live

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -36,9 +37,11 @@ std::string name_of(FrameId frame) {
     return "frame " + std::to_string(frame);
 }
 
+// source: what messages call it.
 FramesView one_frame(const Intrinsics& k, const std::optional<Intrinsics>& colour,
-                     const FrameView& frame, const Mat4& pose) {
+                     const FrameView& frame, const Mat4& pose, std::string source) {
     FramesView out;
+    out.source = std::move(source);
     out.intrinsics = k;
     out.colour_intrinsics = colour;
     out.camera_to_world = {pose};
@@ -75,8 +78,7 @@ class Session::State {
     }
 
     FrameId add(const FrameView& view, const Mat4& pose) {
-        FramesView given = one_frame(k_, colour_, view, pose);
-        given.source = name_of(next_);
+        const FramesView given = one_frame(k_, colour_, view, pose, name_of(next_));
         // As parse() takes it: checked, its colours as the depth camera sees them.
         const DepthFrame frame = CallerFrames(given).load_coloured(0);
         if (std::ranges::all_of(frame.depth, [](std::uint16_t d) { return d == 0; }))
@@ -144,7 +146,7 @@ class Session::State {
         const Passed passed = passed_through(frames, last ? last->frames.back() + 1 : 0);
         FramesView view;
         view.intrinsics = k_;
-        view.source = "session";
+        view.source = options_.source;
         for (const auto& [frame, kept] : frames) view.camera_to_world.push_back(kept.pose);
         DepthFrame current;
         view.image = [&](std::size_t n) {
@@ -172,7 +174,8 @@ class Session::State {
             labeller = labeller_;
         }
         if (!scene) throw Error(ErrorKind::usage, "session: nothing is known before update()");
-        const FrameLabels found = labeller->label(one_frame(k_, colour_, view, pose), 0, threads_);
+        const FrameLabels found =
+            labeller->label(one_frame(k_, colour_, view, pose, "frame"), 0, threads_);
         ThingLabels out{found.width, found.height, {}};
         out.thing.reserve(found.object.size());
         for (const std::int32_t o : found.object)
@@ -185,7 +188,7 @@ class Session::State {
   private:
     struct Kept {
         std::shared_ptr<const live::KeptFrame> frame;
-        Mat4 pose{};  // as it was given: made rigid twice it may be another in its last bits
+        Mat4 pose{};  // as it was given
     };
     using Frames = std::map<FrameId, Kept>;
 
@@ -254,7 +257,7 @@ class Session::State {
         for (auto at = frames.begin(); at != frames.end(); ++at, ++n) {
             if (number_of(at->first) % every != 0) continue;
             const FramesView view =
-                one_frame(k, std::nullopt, view_of(passed.seen[n], k), at->second.pose);
+                one_frame(k, std::nullopt, view_of(passed.seen[n], k), at->second.pose, {});
             out[at->first] = {labeller.label(view, 0, threads_).object, flags(passed.gone[n]),
                               flags(passed.came[n])};
         }

@@ -18,9 +18,11 @@
 #include "result/landscapes_json.h"
 #include "result/scene_json.h"
 #include "result/solids_file.h"
+#include "result/things_json.h"
 #include "result/write_ply.h"
 #include "scale/tiled_result.h"
 #include "topple/parse.h"
+#include "topple/session.h"
 #include "vdb/voxel_scene.h"
 
 namespace topple {
@@ -120,10 +122,9 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
     return out;
 }
 
-}  // namespace
-
-void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
-                   const OutputOptions& options) {
+// things: what a session knows of the result besides; null: it is of no session.
+void write_folder(const ParseResult& result, const LiveScene* things,
+                  const std::filesystem::path& folder, const OutputOptions& options) {
     if (!result.tiled && !result.voxels)
         throw Error(ErrorKind::usage,
                     "write_outputs: the result was read from a folder, which has no voxel grids, "
@@ -138,11 +139,13 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
         if (options.cancelled && options.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
     };
-    const auto files =
+    auto files =
         writers(out.folder(), result, options,
                 {options.command.empty() ? command_for(result.scene, folder) : options.command,
                  options.title},
                 poll);
+    if (things)
+        files.emplace_back([&] { io::write_things_json(out.folder() / "things.json", *things); });
     // Surfaces have threads of their own.
     ThreadPool(options.threads == 1 ? 1 : 2).each(files.size(), 1, [&](std::size_t n) {
         poll();
@@ -151,6 +154,20 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     poll();
     out.commit();
     if (result.tiled) result.tiled->finished();
+}
+
+}  // namespace
+
+void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
+                   const OutputOptions& options) {
+    write_folder(result, nullptr, folder, options);
+}
+
+void write_outputs(const LiveScene& found, const std::filesystem::path& folder,
+                   const OutputOptions& options) {
+    if (!found.result)
+        throw Error(ErrorKind::usage, "write_outputs: there is no result; call update() first");
+    write_folder(*found.result, &found, folder, options);
 }
 
 }  // namespace topple

@@ -58,6 +58,8 @@ void CallerFrames::refuse(const std::string& why) const {
 }
 
 void CallerFrames::refuse(std::size_t frame, const std::string& why) const {
+    // What names a frame that stands alone needs no number, which may be another one to the caller.
+    if (from_.camera_to_world.size() <= 1 && !from_.source.empty()) refuse(why);
     refuse("frame " + std::to_string(frame) + ": " + why);
 }
 

@@ -58,7 +58,9 @@ def test_what_is_no_frame_is_refused(device, depth_frames):
         assert raised.value.kind == kind
     live.add(depth_frames[0], POSES[0])
     for call, words in ((lambda: live.add(depth_frames[0], POSES[0]), 'once more'), (lambda: live.add(depth_frames[1][:50], POSES[1]), 'pixels'),
-                        (lambda: live.forget(7), 'no frame 7'), (lambda: live.forget('x'), "no frame 'x'"),
+                        (lambda: live.forget(7), 'no frame 7'), (lambda: live.forget('x'), "expected the number of one frame, as add.. returns it, not 'x'"),
+                        (lambda: live.forget([0]), r"not \[0\]"), (lambda: live.forget(-1), 'no frame -1'), (lambda: live.correct({0: None}), r'shape \(4, 4\)'),
+                        (lambda: live.correct({0: POSES[0] * np.nan}), 'the pose of frame 0 is not'), (lambda: live.add(depth_frames[1], POSES[1] * np.nan), 'the pose is not'),
                         (lambda: live.correct({7: POSES[0]}), 'no frame 7'), (lambda: live.add(depth_frames[1].astype(int), POSES[1]), 'uint16')):
         with pytest.raises(topple.Error, match=words):
             call()

@@ -74,7 +74,7 @@ struct FramesView {
     // called for numbers from 0 on, on the thread that called the parse, more than once for each,
     // and always with the same answer. It must stay until the next call.
     std::function<FrameView(std::size_t)> image;
-    std::string source;  // what messages call them; empty: "frames"
+    std::string source;  // what messages call them, or the only one; empty: "frames"
 };
 
 }  // namespace topple

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "topple/frames_view.h"
@@ -49,6 +51,10 @@ struct LiveScene {
     std::vector<FrameId> frames;  // that it was parsed from
 };
 
+// As write_outputs() of its result, with things.json: the things and their changes.
+void write_outputs(const LiveScene& found, const std::filesystem::path& folder,
+                   const OutputOptions& options = {});
+
 // A thing for each pixel, rows from the upper one down; -1: nothing that is known.
 struct ThingLabels {
     std::uint32_t width = 0, height = 0;
@@ -63,6 +69,7 @@ struct SessionOptions {
     // That kept frames take, compressed: 640 x 480 pixels about 0.3 MB. Where that is not enough
     // the frame goes whose camera has a neighbour in time next to it.
     std::uint64_t max_frame_bytes = 2'000'000'000;
+    std::string source = "session";  // Scene::source of its results
 };
 
 // One thread may add, correct and forget frames while another updates and any number read scenes.

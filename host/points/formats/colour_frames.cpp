@@ -160,15 +160,19 @@ std::vector<std::uint8_t> ColourCamera::seen_by_depth(const ColourImage& image) 
     return seen_by(depth, own ? *own : scaled(depth, image.width, image.height), image);
 }
 
+const FileName* ColourFrames::file(std::size_t index) const {
+    return images_.empty() || !images_.at(index) ? nullptr : &*images_[index];
+}
+
 std::vector<std::uint8_t> ColourFrames::load(std::size_t index) const {
-    if (images_.empty() || !images_.at(index)) return {};
-    const FileName& name = *images_[index];
-    const fs::path& file = name.path();
+    const FileName* const name = file(index);
+    if (!name) return {};
+    const fs::path& file = name->path();
     const char* const mend =
         "give the colour camera's intrinsics as \"color_intrinsics\" in intrinsics.json, or move "
         "color/ away";
     const ColourImage image =
-        decode_colour_image(file, read_file(name).text(), [&](std::uint32_t w, std::uint32_t h) {
+        decode_colour_image(file, read_file(*name).text(), [&](std::uint32_t w, std::uint32_t h) {
             if (const auto fault = camera_.size_fault(w, h, mend)) fail(file, *fault);
         });
     return camera_.seen_by_depth(image);

@@ -45,6 +45,9 @@ class ColourFrames {
     // another size than its intrinsics or other proportions than the depth images.
     std::vector<std::uint8_t> load(std::size_t index) const;
 
+    // The image of depth image `index`; null where it has none.
+    const FileName* file(std::size_t index) const;
+
     // What looks odd, in sentences.
     const std::vector<std::string>& notes() const { return notes_; }
 

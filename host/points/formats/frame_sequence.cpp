@@ -100,6 +100,12 @@ DepthFrame FrameSequence::load_coloured(std::size_t index) const {
     return frame;
 }
 
+std::vector<fs::path> FrameSequence::files(std::size_t index) const {
+    std::vector<fs::path> out{images_.at(index).path()};
+    if (const FileName* colours = colours_.file(index)) out.push_back(colours->path());
+    return out;
+}
+
 std::optional<Vec3> FrameSequence::mean_camera_up() const {
     return io::mean_camera_up(poses_);
 }

@@ -35,6 +35,8 @@ class FrameSequence final : public FrameStream {
     // intrinsics().
     DepthFrame load(std::size_t index) const override;
     DepthFrame load_coloured(std::size_t index) const override;
+    // What load_coloured() reads: the depth image, and the colour image where there is one.
+    std::vector<std::filesystem::path> files(std::size_t index) const;
     // The colour images of the same frames.
     const ColourFrames& colours() const { return colours_; }
 

@@ -13,6 +13,9 @@ namespace {
 
 // Matrices are printed with six digits or so; beyond this they are something else.
 constexpr double rotation_tolerance = 1e-3;
+// What arithmetic leaves of a rotation that was made so: that one stays as it is, so that making it
+// rigid again changes no bit.
+constexpr double rounding = 1e-14;
 
 bool last_column_is_unit(const Mat4& m) {
     return std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) <=
@@ -48,8 +51,10 @@ std::optional<std::string> make_rigid(Mat4& m) {
                short_number(error) + " (at most 0.001), its determinant is " +
                short_number(r.determinant());
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    pose.topLeftCorner<3, 3>() = svd.matrixU() * svd.matrixV().transpose();
+    if (error > rounding) {
+        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        pose.topLeftCorner<3, 3>() = svd.matrixU() * svd.matrixV().transpose();
+    }
     pose.row(3) << 0, 0, 0, 1;
     return std::nullopt;
 }

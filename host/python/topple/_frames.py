@@ -34,8 +34,8 @@ def _without_gaps(values, dtype):
     return values if inner.flags.c_contiguous else np.ascontiguousarray(values)
 
 
-def poses(given, count):
-    """16 numbers for each frame, in a row; none for a single frame without a pose."""
+def poses(given, count, number=None):
+    """16 numbers for each frame, in a row; none for a single frame without a pose. number: of a single one, for messages."""
     if given is None:
         if count != 1:
             raise usage(f'camera_to_world: {count} frames take a pose each, an array of shape ({count}, 4, 4)')
@@ -50,8 +50,9 @@ def poses(given, count):
     if not np.issubdtype(found.dtype, np.number) or found.dtype.kind == 'c':
         raise usage(f'camera_to_world: expected floats, not {found.dtype}')
     if not np.isfinite(found).all():
-        frame = int(np.argwhere(~np.isfinite(found))[0][0])
-        raise error('input', f'frames: the pose of frame {frame} is not finite; leave the frame out')
+        frame = int(np.argwhere(~np.isfinite(found))[0][0]) if count != 1 else number
+        of = '' if frame is None else f' of frame {frame}'
+        raise error('input', f'frames: the pose{of} is not finite; leave the frame out')
     return exactly(found.astype(float).ravel(), 'camera_to_world', (None,), float)
 
 

@@ -54,9 +54,7 @@ class Session:
         readings, or that of before once more, is an Error of kind "input"."""
         depth = depth_image(depth, 'depth')
         frame = depth, None if colour is None else colour_image(colour, 'colour')
-        pose = _poses(camera_to_world, 1)
-        if not len(pose):
-            raise usage('camera_to_world: expected an array of shape (4, 4)')
+        pose = self._pose(camera_to_world)
         if self._session is None:
             height, width = depth.shape
             self._session = _topple.Session((width, height), self._camera, self._device, self._options, self._forget_gone, self._max_frame_bytes)
@@ -66,10 +64,11 @@ class Session:
         """After a loop closure: a dict of the poses, (4, 4), that are others now, by frame."""
         frames = [self._number(frame) for frame in camera_to_world]
         if frames:
-            self._begun().correct(frames, _poses(np.stack([np.asarray(pose, float) for pose in camera_to_world.values()]), len(frames)))
+            poses = [self._pose(pose, frame) for frame, pose in zip(frames, camera_to_world.values())]
+            self._begun().correct(frames, np.concatenate(poses))
 
     def forget(self, frame):
-        """Leaves a frame out."""
+        """Leaves a frame out, by its number: what only it shows is lost at the next update(). Numbers of others stay."""
         self._begun().forget(self._number(frame))
 
     @property
@@ -95,17 +94,26 @@ class Session:
 
     def label(self, depth, camera_to_world):
         """The id of the Thing that each pixel of a depth image shows, (H, W) int64; -1: nothing that is known."""
-        height, width, ids = self._begun().label((depth_image(depth, 'depth'), None), _poses(camera_to_world, 1))
+        height, width, ids = self._begun().label((depth_image(depth, 'depth'), None), self._pose(camera_to_world))
         return ids.reshape(height, width)
+
+    @staticmethod
+    def _pose(camera_to_world, number=None):
+        pose = _poses(camera_to_world, 1, number)
+        if not len(pose):
+            raise usage('camera_to_world: expected an array of shape (4, 4)')
+        return pose
 
     @staticmethod
     def _number(frame):
         try:
             number = operator.index(frame)
         except TypeError:
-            number = -1
-        if number < 0 or isinstance(frame, bool):
-            raise usage(f'session: there is no frame {frame!r}')
+            number = None
+        if number is None or isinstance(frame, bool):
+            raise usage(f'session: expected the number of one frame, as add() returns it, not {frame!r}')
+        if number < 0:
+            raise usage(f'session: there is no frame {number}')
         return number
 
     def _begun(self):

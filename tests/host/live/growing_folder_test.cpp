@@ -7,6 +7,7 @@
 #include "host/pipeline/small_walk.h"
 #include "io/file_writer.h"
 #include "lab/scan/files.h"
+#include "points/formats/frame_sequence.h"
 
 // A folder of frames that another program is writing.
 namespace topple::test {
@@ -28,11 +29,14 @@ class GrowingFolders : public Files {
         io::write_file(path("scan/poses.txt"), text);
     }
     bool read(std::size_t most = 100) {
-        return folder_.read(session_, most, [&](const char* line) { told_ = line; });
+        return folder_.read(session_, {most, false, [&](const auto& line) { told_ += line; }});
+    }
+    bool read_last() {
+        return folder_.read(session_, {100, true, [&](const auto& line) { told_ += line; }});
     }
 
     scenes::Sequence walk_;
-    live::GrowingFolder folder_{path("scan")};
+    live::GrowingFolder folder_{path("scan"), live::GrowingFolder::Clock::duration::zero()};
     Session session_{walk_.intrinsics};
     std::string told_;
 };
@@ -80,11 +84,60 @@ TEST_F(GrowingFolders, ADarkFrameIsLeftOutAndNoneMayGo) {
                             std::vector<std::uint16_t>(std::size_t{96} * 72));
     write_poses(3);
     EXPECT_TRUE(read());
-    EXPECT_NE(told_.find("no readings"), std::string::npos);
+    EXPECT_NE(told_.find("depth/1.png: frame 1: it has no readings"), std::string::npos) << told_;
+    EXPECT_EQ(folder_.damaged(), 0u);
     EXPECT_EQ(session_.frames().size(), 2u);
     std::filesystem::remove(path("scan/depth/2.png"));
     write_poses(2);
     EXPECT_THROW(read(), Error);
+}
+
+// One that is still being written grows, or is the last one.
+TEST_F(GrowingFolders, ADamagedImageIsLeftOutAndThoseBehindItKeepTheirPoses) {
+    io::write_file(path("scan/intrinsics.json"), scenes::intrinsics_text(walk_.intrinsics));
+    for (const std::size_t n : {0, 1}) write_frame(n);
+    const std::string whole = bytes_of_file(path("scan/depth/1.png"));
+    const auto cut_to = [&](std::size_t bytes) {
+        io::write_file(path("scan/depth/1.png"), whole.substr(0, bytes));
+    };
+    cut_to(500);
+    write_poses(2);
+    EXPECT_TRUE(read());
+    for (int looks = 0; looks < 3; ++looks) EXPECT_FALSE(read()) << "none is behind it";
+    write_frame(2);
+    write_poses(3);
+    cut_to(600);
+    EXPECT_FALSE(read()) << "it has grown";
+    EXPECT_NE(folder_.waits_for().find("1.png"), std::string::npos);
+    EXPECT_EQ(told_, "");
+    EXPECT_TRUE(read());
+    EXPECT_EQ(session_.frames(), (std::vector<FrameId>{0, 1}));
+    EXPECT_NE(told_.find("depth/1.png: is cut short"), std::string::npos) << told_;
+    EXPECT_TRUE(folder_.waits_for().empty());
+    EXPECT_EQ(folder_.damaged(), 1u);
+    EXPECT_EQ(folder_.images(), 3u);
+    told_.clear();
+    EXPECT_FALSE(read());
+    EXPECT_EQ(told_, "") << "it is told once";
+    // The third image has the third line.
+    const std::vector<Mat4> poses = io::FrameSequence::open(path("scan")).poses();
+    FramesView same = frames_view_of(walk_);
+    same.images = {same.images[0], same.images[2]};
+    same.camera_to_world = {poses[0], poses[2]};
+    EXPECT_EQ(session_.update()->result->scene.points.x, parse(same).scene.points.x);
+}
+
+TEST_F(GrowingFolders, NobodyWritesAnyMoreWhereItEnds) {
+    io::write_file(path("scan/intrinsics.json"), scenes::intrinsics_text(walk_.intrinsics));
+    for (const std::size_t n : {0, 1, 2}) write_frame(n);
+    for (const char* name : {"scan/depth/0.png", "scan/depth/2.png"})
+        io::write_file(path(name), "\x89PNG");
+    write_poses(3);
+    EXPECT_TRUE(read_last());
+    EXPECT_FALSE(read_last());
+    EXPECT_EQ(session_.frames().size(), 1u);
+    EXPECT_EQ(folder_.damaged(), 2u);
+    EXPECT_NE(folder_.first_damaged().find("0.png"), std::string::npos);
 }
 
 }  // namespace

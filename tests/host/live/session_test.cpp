@@ -112,7 +112,8 @@ TEST_F(Sessions, WhatIsNoFrameIsRefusedAndChangesNothing) {
             ADD_FAILURE() << words;
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), kind) << error.what();
-            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+            const std::string what = error.what();
+            EXPECT_NE(what.find(words), std::string::npos) << what;
         }
     };
     const std::vector<std::uint16_t> dark(std::size_t{96} * 72, 0);
@@ -123,9 +124,10 @@ TEST_F(Sessions, WhatIsNoFrameIsRefusedAndChangesNothing) {
     skewed[0] = 3;
     refused(ErrorKind::input, "no readings", [&] { session.add(empty, pose(1)); });
     refused(ErrorKind::input, "once more", [&] { session.add(frame(0), pose(0)); });
-    refused(ErrorKind::input, "48 x 72", [&] { session.add(small, pose(1)); });
-    refused(ErrorKind::input, "camera_to_world", [&] { session.add(frame(1), skewed); });
-    refused(ErrorKind::input, "camera_to_world", [&] { session.correct({{0, skewed}}); });
+    refused(ErrorKind::input, "frame 1: depth is 48 x 72", [&] { session.add(small, pose(1)); });
+    const char* const of_1 = "frame 1: camera_to_world";
+    refused(ErrorKind::input, of_1, [&] { session.add(frame(1), skewed); });
+    refused(ErrorKind::input, "frame 0: camera", [&] { session.correct({{0, skewed}}); });
     refused(ErrorKind::usage, "no frame 9", [&] { session.correct({{9, pose(0)}}); });
     refused(ErrorKind::usage, "no frame 9", [&] { session.forget(9); });
     refused(ErrorKind::usage, "before update()", [&] { session.label(frame(0), pose(0)); });

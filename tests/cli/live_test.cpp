@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "lab/rooms/furnished_room.h"
+#include "lab/scan/depth_camera.h"
+#include "lab/scan/files.h"
+
+// topple live follows a folder of frames, and writes what a parse of it would.
+namespace topple::test {
+namespace {
+
+using nlohmann::json;
+
+class Live : public Program {
+  protected:
+    Live() {
+        scenes::CameraOptions camera;
+        camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
+        camera.frames = 8;
+        const auto world = scenes::furnished_room({});
+        const scenes::Sequence walk = scenes::walk(world, camera);
+        scenes::write_sequence(in("scan"), world, walk);
+        // Poses to few digits, as programs print them, which are made rotations.
+        std::string poses;
+        char number[32];
+        for (const DepthFrame& frame : walk.frames)
+            for (std::size_t k = 0; k < 12; ++k) {
+                std::snprintf(number, sizeof(number), "%.6f%c", frame.camera_to_world[k],
+                              k == 11 ? '\n' : ' ');
+                poses += number;
+            }
+        put("scan/trajectory.txt", poses);
+    }
+    json read(const std::string& name) const { return json::parse(bytes_of_file(in(name))); }
+};
+
+constexpr const char* follow = "live scan -o live --idle 0.3 --backend native --threads 2";
+
+TEST_F(Live, writes_what_a_parse_of_the_folder_does) {
+    const Finished done = succeeds(std::string(follow) + " --keep-gone");
+    EXPECT_TRUE(done.out.starts_with(
+        "following scan, with results in live; it ends after 0.3 s without anything new\n"))
+        << done.out;
+    EXPECT_THAT(done.out, HasSubstr("8 frames, "));
+    succeeds("parse scan -o parsed --backend native --threads 2 --no-cache --quiet");
+    for (const std::string name :
+         {"points.ply", "solid.ply", "volume.vdb", "landscapes.json", "solids.bin"})
+        EXPECT_TRUE(bytes_of_file(in("live/" + name)) == bytes_of_file(in("parsed/" + name)))
+            << name;
+    json live = read("live/scene.json"), parsed = read("parsed/scene.json");
+    live.erase("timings_s");
+    parsed.erase("timings_s");
+    EXPECT_EQ(json::diff(live, parsed).dump(), "[]");
+
+    const json things = read("live/things.json");
+    EXPECT_EQ(things["schema"], "topple.things/1");
+    EXPECT_EQ(things["frames"], json({0, 1, 2, 3, 4, 5, 6, 7}));
+    ASSERT_EQ(things["things"].size(), live["objects"].size());
+    EXPECT_EQ(things["things"][0]["id"], 0);
+    for (std::size_t n = 0; n < things["things"].size(); ++n) {
+        EXPECT_EQ(things["things"][n]["object"], n);
+        EXPECT_EQ(things["things"][n]["change"], "found");
+        EXPECT_EQ(things["things"][n]["moved_m"], 0.0);
+    }
+    // A parse into the same folder has no things.
+    succeeds("parse scan -o live --backend native --no-cache --quiet");
+    EXPECT_FALSE(std::filesystem::exists(in("live/things.json")));
+}
+
+TEST_F(Live, says_what_is_damaged_and_goes_on_with_what_is_behind_it) {
+    const std::string name = "scan/depth/0003.png", whole = bytes_of_file(in(name));
+    ASSERT_GT(whole.size(), 1000u);
+    put(name, whole.substr(0, 1000));
+    const Finished done = topple(std::string(follow) + " --quiet");
+    EXPECT_EQ(done.code, 1);
+    EXPECT_TRUE(done.err.starts_with(name + ": is cut short")) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("; it is left out\n"));
+    EXPECT_TRUE(done.err.ends_with("; 1 damaged image of 8 left out of live\n")) << done.err;
+    EXPECT_EQ(read("live/things.json")["frames"].size(), 7u);
+    EXPECT_TRUE(std::filesystem::exists(in("live/report.html")));
+}
+
+TEST_F(Live, a_signal_ends_it_with_what_it_has_written) {
+    const Finished done = topple("live scan -o live --backend native", [&](const std::string&) {
+        return bytes_of_file(path("stdout")).find("8 frames") == std::string::npos ? 0 : SIGINT;
+    });
+    EXPECT_EQ(done.code, 128 + SIGINT);
+    EXPECT_EQ(done.err, "topple: interrupted; live is of 8 frames\n");
+    EXPECT_TRUE(std::filesystem::exists(in("live/scene.json")));
+}
+
+}  // namespace
+}  // namespace topple::test
