@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/depth_noise.h"
 
@@ -17,8 +18,16 @@ constexpr double most_turned_cosine = 0.5, most_moved_m = 4;
 constexpr int most_looks = 3;
 // Deviations of a reading beyond which it is another place, and what poses are off besides.
 constexpr float sure = 3, pose_error_m = 0.03F;
+// Frames fit where one sees through at most so much of what both show: else it is poses that are
+// off. What was taken away is a smaller part.
+constexpr double most_seen_through = 0.25;
+// And where a correction has not made that more, by so much of what both show, of which they showed
+// at least so much before.
+constexpr double most_worse = 0.01, least_before = 0.5;
 
-struct Camera {
+}  // namespace
+
+struct Looks::Camera {
     explicit Camera(const Mat4& pose) {
         for (std::size_t n = 0; n < 12; ++n) m[n] = static_cast<float>(pose[n]);
     }
@@ -31,14 +40,21 @@ struct Camera {
         return {m[0] * x + m[4] * y + m[8] * z, m[1] * x + m[5] * y + m[9] * z,
                 m[2] * x + m[6] * y + m[10] * z};
     }
+    bool looks_like(const Camera& other) const {
+        const double cosine = m[2] * other.m[2] + m[6] * other.m[6] + m[10] * other.m[10];
+        const double moved = std::hypot(m[3] - other.m[3], m[7] - other.m[7], m[11] - other.m[11]);
+        return cosine >= most_turned_cosine && moved <= most_moved_m;
+    }
+    // Where a pixel's reading lies, z metres away.
+    std::array<float, 3> place(const Intrinsics& k, std::size_t u, std::size_t v, double z) const {
+        return world(static_cast<float>(z * (static_cast<double>(u) - k.cx) / k.fx),
+                     static_cast<float>(z * (static_cast<double>(v) - k.cy) / k.fy),
+                     static_cast<float>(z));
+    }
     std::array<float, 12> m{};
 };
 
-bool look_alike(const Camera& a, const Camera& b) {
-    const double cosine = a.m[2] * b.m[2] + a.m[6] * b.m[6] + a.m[10] * b.m[10];
-    const double moved = std::hypot(a.m[3] - b.m[3], a.m[7] - b.m[7], a.m[11] - b.m[11]);
-    return cosine >= most_turned_cosine && moved <= most_moved_m;
-}
+namespace {
 
 std::vector<std::uint16_t> nearest_around(const Intrinsics& k, const DepthFrame& frame) {
     const std::size_t width = k.width, height = k.height;
@@ -56,10 +72,10 @@ std::vector<std::uint16_t> nearest_around(const Intrinsics& k, const DepthFrame&
 
 enum class Look : std::uint8_t { none, same, through };
 
-// What a frame says of a place.
-Look look_at(const Intrinsics& k, const Camera& camera, const std::vector<std::uint16_t>& nearest,
+// What a frame says of a place, in its camera's axes.
+Look look_at(const Intrinsics& k, const std::vector<std::uint16_t>& nearest,
              const std::array<float, 3>& place) {
-    const auto [x, y, z] = camera.seen(place);
+    const auto [x, y, z] = place;
     if (!(z > 0)) return Look::none;
     const auto u =
         static_cast<int>(std::lround(x / z * static_cast<float>(k.fx) + static_cast<float>(k.cx)));
@@ -78,43 +94,90 @@ Look look_at(const Intrinsics& k, const Camera& camera, const std::vector<std::u
 
 }  // namespace
 
-Looks::Looks(const Intrinsics& intrinsics, std::span<const DepthFrame> frames, ThreadPool& threads)
-    : intrinsics_(intrinsics), frames_(frames), threads_(threads), nearest_(frames.size()) {
+Looks::Looks(const Intrinsics& intrinsics, std::span<const DepthFrame> frames, ThreadPool& threads,
+             std::vector<std::optional<Mat4>> earlier)
+    : intrinsics_(intrinsics),
+      frames_(frames),
+      threads_(threads),
+      earlier_(std::move(earlier)),
+      nearest_(frames.size()) {
+    earlier_.resize(frames_.size());
     threads_.each(frames_.size(), 1,
                   [&](std::size_t n) { nearest_[n] = nearest_around(intrinsics_, frames_[n]); });
+}
+
+// Of a frame's readings, sampled, those whose place another one does not hide, with these poses.
+Looks::Shared Looks::shared(std::size_t frame, const Camera& camera, std::size_t other,
+                            const Camera& from) const {
+    constexpr std::uint32_t step = 4;
+    const Intrinsics& k = intrinsics_;
+    Shared out;
+    for (std::uint32_t v = 0; v < k.height; v += step) {
+        for (std::uint32_t u = 0; u < k.width; u += step) {
+            const std::uint16_t stored = frames_[frame].depth[std::size_t{v} * k.width + u];
+            if (stored == 0) continue;
+            const Look look = look_at(k, nearest_[other],
+                                      from.seen(camera.place(k, u, v, stored / k.depth_scale)));
+            if (look == Look::none) continue;
+            out.through += look == Look::through;
+            ++out.seen;
+        }
+    }
+    return out;
+}
+
+bool Looks::fit(std::size_t frame, std::size_t other) const {
+    const Shared now = shared(frame, Camera(frames_[frame].camera_to_world), other,
+                              Camera(frames_[other].camera_to_world));
+    if (now.through > most_seen_through * now.seen) return false;
+    if (!earlier_[frame] || !earlier_[other]) return true;
+    const Shared before = shared(frame, Camera(*earlier_[frame]), other, Camera(*earlier_[other]));
+    // Of frames that looked elsewhere nothing was known.
+    if (before.seen < least_before * now.seen) return true;
+    return now.through * before.seen <= (before.through + most_worse * before.seen) * now.seen;
 }
 
 std::vector<Gone> Looks::seen_through(const Asked& asked) const {
     const Intrinsics& k = intrinsics_;
     std::vector<Camera> cameras;
     for (const DepthFrame& frame : frames_) cameras.emplace_back(frame.camera_to_world);
-    const auto through_at = [&](const std::vector<std::size_t>& others,
-                                const std::array<float, 3>& place) {
+    struct Tally {
         int looks = 0, through = 0;
-        for (const std::size_t other : others) {
-            const Look look = look_at(k, cameras[other], nearest_[other], place);
-            if (look == Look::none) continue;
+        void add(Look look) {
+            if (looks == most_looks) return;
+            ++looks;
             through += look == Look::through;
-            if (++looks == most_looks) break;
         }
-        return static_cast<std::uint8_t>(2 * through > looks ? through : 0);
+        std::uint8_t most() const {
+            return static_cast<std::uint8_t>(2 * through > looks ? through : 0);
+        }
+    };
+    struct Other {
+        std::size_t frame;
+        bool fits;
     };
     std::vector<Gone> out(frames_.size());
     threads_.each(frames_.size(), 1, [&](std::size_t n) {
         const auto [first, last] = asked(n);
-        std::vector<std::size_t> others;
+        std::vector<Other> others;
         for (std::size_t other = last; other-- > first && others.size() < most_asked;)
-            if (look_alike(cameras[n], cameras[other])) others.push_back(other);
+            if (cameras[n].looks_like(cameras[other])) others.push_back({other, fit(n, other)});
         for (std::uint32_t v = 0; v < k.height; ++v) {
             for (std::uint32_t u = 0; u < k.width; ++u) {
                 const std::uint16_t stored = frames_[n].depth[std::size_t{v} * k.width + u];
                 if (stored == 0) continue;
-                const double z = stored / k.depth_scale;
-                const auto place = cameras[n].world(static_cast<float>(z * (u - k.cx) / k.fx),
-                                                    static_cast<float>(z * (v - k.cy) / k.fy),
-                                                    static_cast<float>(z));
-                if (const auto through = through_at(others, place); through > 0)
-                    out[n].push_back({u, v, stored, through});
+                const auto place = cameras[n].place(k, u, v, stored / k.depth_scale);
+                Tally all, fitting;
+                for (const Other& other : others) {
+                    const Look look =
+                        look_at(k, nearest_[other.frame], cameras[other.frame].seen(place));
+                    if (look == Look::none) continue;
+                    all.add(look);
+                    if (other.fits) fitting.add(look);
+                    if (fitting.looks == most_looks) break;
+                }
+                if (all.most() > 0 || fitting.most() > 0)
+                    out[n].push_back({u, v, stored, all.most(), fitting.most()});
             }
         }
     });

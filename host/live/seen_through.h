@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,11 +14,12 @@
 
 namespace topple::live {
 
-// A pixel, the depth that it holds, and how many looks saw through its place.
+// A pixel, the depth that it holds, and how many looks saw through its place: most of the first
+// three, and most of the first three of frames that fit this one.
 struct GonePixel {
     std::uint32_t u, v;
     std::uint16_t stored;
-    std::uint8_t through;
+    std::uint8_t through, through_of_fitting;
 };
 using Gone = std::vector<GonePixel>;
 
@@ -27,16 +29,28 @@ using Asked = std::function<std::pair<std::size_t, std::size_t>(std::size_t fram
 // Depth frames that are asked about one another; all must stay.
 class Looks {
   public:
-    Looks(const Intrinsics& intrinsics, std::span<const DepthFrame> frames, ThreadPool& threads);
+    // earlier: the frames' poses at an earlier time, of those that were there; none: of no frame.
+    Looks(const Intrinsics& intrinsics, std::span<const DepthFrame> frames, ThreadPool& threads,
+          std::vector<std::optional<Mat4>> earlier = {});
     // Of each frame the pixels that show places which those asked see through: of later ones, what
     // was there has gone since; of earlier ones, it has come. It takes most of the first three
-    // looks. The result depends on the frames and their poses alone.
+    // looks. `through` depends on the frames and their poses alone, through_of_fitting on the
+    // earlier poses, too.
     std::vector<Gone> seen_through(const Asked& asked) const;
 
   private:
+    struct Camera;
+    struct Shared {
+        double seen = 0, through = 0;
+    };
+    Shared shared(std::size_t frame, const Camera& camera, std::size_t other,
+                  const Camera& from) const;
+    bool fit(std::size_t frame, std::size_t other) const;
+
     Intrinsics intrinsics_;
     std::span<const DepthFrame> frames_;
     ThreadPool& threads_;
+    std::vector<std::optional<Mat4>> earlier_;
     // Of each frame, by pixel: the nearest reading of the nine around; 0 where one is missing.
     std::vector<std::vector<std::uint16_t>> nearest_;
 };

@@ -158,6 +158,8 @@ class Session::State {
         auto labeller = std::make_shared<const FrameLabeller>(*found->result);
         found->things = known_.name(found->result->scene, shown(frames, passed, *labeller));
         parsed_changes_ = changes;
+        parsed_poses_.clear();
+        for (const auto& [frame, kept] : frames) parsed_poses_[frame] = kept.pose;
         publish(found, std::move(labeller));
         return found;
     }
@@ -225,12 +227,17 @@ class Session::State {
     Passed passed_through(const Frames& frames, FrameId first_new) const {
         Passed out;
         std::size_t old = 0;
+        std::vector<std::optional<Mat4>> earlier;
         for (const auto& [frame, kept] : frames) {
             old += frame < first_new;
+            const auto parsed = parsed_poses_.find(frame);
+            earlier.push_back(parsed == parsed_poses_.end() ? std::nullopt
+                                                            : std::optional(parsed->second));
             out.seen.push_back(coarse_.of(kept.frame->depth_frame()));
             out.seen.back().camera_to_world = kept.pose;
         }
-        const live::Looks looks(coarse_.intrinsics(), out.seen, options_.parse.device->threads());
+        const live::Looks looks(coarse_.intrinsics(), out.seen, options_.parse.device->threads(),
+                                std::move(earlier));
         const std::size_t all = out.seen.size();
         out.gone = looks.seen_through([&](std::size_t n) { return std::pair(n + 1, all); });
         out.came = looks.seen_through(
@@ -249,7 +256,8 @@ class Session::State {
         const Intrinsics& k = coarse_.intrinsics();
         const auto flags = [&](const live::Gone& pixels) {
             std::vector<bool> out(std::size_t{k.width} * k.height);
-            for (const live::GonePixel& p : pixels) out[std::size_t{p.v} * k.width + p.u] = true;
+            for (const live::GonePixel& p : pixels)
+                out[std::size_t{p.v} * k.width + p.u] = p.through_of_fitting > 0;
             return out;
         };
         live::ShownObjects out;
@@ -285,6 +293,7 @@ class Session::State {
     std::mutex update_mutex_;
     live::KnownThings known_;
     std::uint64_t parsed_changes_ = 0;
+    std::map<FrameId, Mat4> parsed_poses_;  // as of the last update
 
     mutable std::mutex scene_mutex_;
     std::shared_ptr<const LiveScene> scene_;

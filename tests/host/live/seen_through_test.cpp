@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "live/coarse_frame.h"
 
@@ -52,6 +54,44 @@ TEST(SeenThrough, WhatCameAndWhatOnlyNoiseSeparatesHasNot) {
         EXPECT_TRUE(pixels.empty());
     // Another room.
     EXPECT_TRUE(gone({frame(2000), frame(0, 9), frame(0, 9)})[0].empty());
+}
+
+// Of frames that do not fit, and of those that a correction made fit worse.
+TEST(SeenThrough, PosesThatAreOffTellNothing) {
+    ThreadPool threads(2);
+    const auto found = [&](double off_m, const std::vector<std::optional<Mat4>>& earlier) {
+        std::vector<DepthFrame> frames{frame(2000), frame(0), frame(0), frame(0)};
+        for (std::size_t n = 1; n < 4; ++n) frames[n].camera_to_world[11] = off_m;
+        const Gone gone = Looks(k, frames, threads, earlier).seen_through([&](std::size_t n) {
+            return std::pair(n + 1, frames.size());
+        })[0];
+        return std::pair(std::ssize(gone), std::ranges::count_if(gone, [](const GonePixel& p) {
+                             return p.through_of_fitting > 0;
+                         }));
+    };
+    constexpr std::ptrdiff_t board = 400, all = 46 * 62;
+    EXPECT_EQ(found(0, {}), std::pair(board, board));
+    // The wall is 3.3 m away, they say, where the first frame saw it 3 m away.
+    EXPECT_EQ(found(0.3, {}).second, 0);
+    EXPECT_GT(found(0.3, {}).first, all / 2);
+    // Where poses are as they were, or better, it counts; so does what nobody knew before.
+    const Mat4 right = DepthFrame{}.camera_to_world;
+    Mat4 wrong = right, elsewhere = right;
+    wrong[11] = 0.3;
+    elsewhere[3] = 9;
+    for (const Mat4& before : {right, wrong, elsewhere})
+        EXPECT_EQ(found(0, {right, before, before, before}), std::pair(board, board));
+    // 0.3 m to the side: they fit, but for the board's edge, and did so better before.
+    std::vector<DepthFrame> frames{frame(2000), frame(2000, 0.3)};
+    const auto edge = [&](const std::vector<std::optional<Mat4>>& earlier) {
+        const Gone gone = Looks(k, frames, threads, earlier).seen_through([&](std::size_t n) {
+            return std::pair(n + 1, frames.size());
+        })[0];
+        return std::ranges::any_of(gone,
+                                   [](const GonePixel& p) { return p.through_of_fitting > 0; });
+    };
+    EXPECT_TRUE(edge({}));
+    EXPECT_FALSE(edge({right, right}));
 }
 
 TEST(SeenThrough, OnlyWhatTwoLooksSeeThroughIsLeftOut) {

@@ -103,6 +103,27 @@ TEST_F(Sessions, ThingsKeepTheirIdsWhereverTheirFramesGo) {
     EXPECT_EQ(session.update()->result, after->result);
 }
 
+// A correction that is wrong, as of a false loop closure, is no news of the room.
+TEST_F(Sessions, PosesThatBecameWorseChangeNoRoom) {
+    scenes::CameraOptions camera;
+    camera.intrinsics = walk_->intrinsics;
+    camera.frames = 12;
+    const scenes::Sequence walk = scenes::walk(scenes::furnished_room({}), camera);
+    const FramesView view = frames_view_of(walk);
+    Session session(walk.intrinsics, {}, quick());
+    for (std::size_t n = 0; n < 12; ++n) session.add(view.images[n], view.camera_to_world[n]);
+    session.update();
+    for (const double by_m : {0.4, 0.0}) {
+        std::map<FrameId, Mat4> poses;
+        for (std::size_t n = 4; n < 9; ++n) poses[n] = shifted(view.camera_to_world[n], by_m);
+        session.correct(poses);
+        for (const Thing& thing : session.update()->things)
+            EXPECT_TRUE(thing.change != Change::came && thing.change != Change::moved &&
+                        thing.change != Change::gone)
+                << by_m << ": thing " << thing.id << " " << to_string(thing.change);
+    }
+}
+
 TEST_F(Sessions, WhatIsNoFrameIsRefusedAndChangesNothing) {
     Session session(walk_->intrinsics, {}, quick());
     session.add(frame(0), pose(0));
