@@ -190,6 +190,9 @@ typedef struct topple_options {
     const char* cache_file; /* what does not depend on corrections (topple/parse.h); NULL: none */
     double tile_m;          /* not 0: any cloud file is parsed in blocks (topple/parse.h) */
     double stability_level; /* W that objects are to stand, as a share of m g h; 0 */
+    /* What things weigh by name or size: "household" or a file (topple/materials.h). NULL: all are
+     * of density_kg_m3. */
+    const char* materials;
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
@@ -244,7 +247,8 @@ typedef struct topple_object {
     const char *why, *advice; /* sentences */
     /* one standard error each, as barrier_error_J */
     double mass_error_kg, center_of_mass_error_m[3], footprint_error_m;
-    const char* mass_model;  /* "solid", "closed" (boards around contents) or "hollow" (by hand) */
+    /* "solid", "closed" (boards around contents), "hollow" (by hand) or "kind" (by materials) */
+    const char* mass_model;
     double inertia_kg_m2[9]; /* about its centre of mass, along the input's axes, row-major */
     /* to overturn it slowly (struct Overturning of topple/scene.h); NaN where it can't tip */
     double tilt_deg, tilt_error_deg, overturning_direction[3];

@@ -333,7 +333,7 @@ def _components(accelerogram):
 @_named
 def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, motion_unit=None,
-          motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, stability_level=0.0, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
+          motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, stability_level=0.0, grouping_time_s=None, materials=None, corrections=None, cache_file=None, normals=None,
           name=None, viewpoint=None, colours=None, frames=None, camera_to_world=None, intrinsics=None, colour_intrinsics=None,
           tile_m=0.0, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
@@ -365,6 +365,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. Give them where you have them: they help to
     tell things apart that touch (docs/formats.md). progress(stage, done) is called as stages start and go on: done is about
     how much of the whole parse is done, 0 to 1, and never falls. pga_m_s2: the peak of earthquakes in m/s2, of which 0.3 g are 2.94. contents_kg_m3: of closed furniture, or None where all is solid.
+    materials: "household" or a file (docs/disturbances.md): what things weigh by their names or sizes.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
     depend on them, so that the next parse of that file or folder is quick; of what is in memory nothing is kept, and it is
@@ -399,6 +400,8 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         raise _usage('accelerogram_unit: there is no accelerogram whose unit it could be')
     if hazard is not None:
         options.read_hazard_curve(_file('hazard', hazard))
+    if materials is not None:
+        options.read_materials(_file('materials', materials))
     if isinstance(corrections, (str, os.PathLike)):
         options.read_corrections(os.fspath(corrections))
     elif corrections is not None:
