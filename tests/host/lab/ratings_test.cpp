@@ -106,7 +106,8 @@ TEST_F(RatingFiles, BeginAsSheets) {
 
 TEST_F(RatingFiles, ThatAreNone) {
     const std::vector<test::BadFile> bad = {
-        {"", {"first column", "--sheet"}},
+        {"", {"is empty"}},
+        {"\n", {"first column", "--sheet"}},
         {"id,Ann\n", {"line 1", "\"id\"", "not \"object\""}},
         {"object,name\n1,x\n", {"line 1", "0 columns of people"}},
         {"object,Ann\n1,2\nx,3\n", {"line 3", "\"x\" is no number of an object"}},
