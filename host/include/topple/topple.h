@@ -384,6 +384,24 @@ int topple_result_stays(const topple_result* result, uint64_t index, const doubl
                         const double* way, double force_N, double impulse_Ns, double slack_m,
                         int* stays, topple_status* status);
 
+/* The steady push there up to which it stays, newtons: 0 where nobody knows. As above. */
+int topple_result_stays_up_to(const topple_result* result, uint64_t index, const double* place_m,
+                              const double* way, double* force_N, topple_status* status);
+/* Questions before things are taken away (topple/ask.h). `count` becomes how many ids the answer
+ * has; the first `capacity` of them go to `ids`. What falls, in that order, once `taken` is gone:
+ */
+int topple_result_falls_without(const topple_result* result, const int32_t* taken,
+                                uint64_t taken_count, int32_t* ids, uint64_t capacity,
+                                uint64_t* count, topple_status* status);
+/* an order in which all can be taken away; or what has to go before object `before`, which comes
+ * last; -1: all; things that carry one another in a ring follow on one another; */
+int topple_result_removal_order(const topple_result* result, int32_t before, int32_t* ids,
+                                uint64_t capacity, uint64_t* count, topple_status* status);
+/* and what holds an object, the likeliest first; probabilities: as many, or NULL. */
+int topple_result_held_by(const topple_result* result, int32_t object, int32_t* ids,
+                          double* probabilities, uint64_t capacity, uint64_t* count,
+                          topple_status* status);
+
 /* What pixels of depth frames show of a result (topple/frame_labels.h), which must hold its points'
  * coordinates, and need not outlive it. May be asked from several threads at once. */
 typedef struct topple_labeller topple_labeller;

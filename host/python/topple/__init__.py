@@ -232,8 +232,18 @@ class Result:
         is not hollow; touches beside the line above its centre of mass, which turn it; many of them; what it carries or holds. Raises Error of
         kind "usage" for what makes no sense: a place that is not finite, a way that is not level or not of unit length, a figure that is
         negative or not finite; and for a result that was pickled."""
+        return not self.why_moves(item, place_m, way, force_N=force_N, impulse_Ns=impulse_Ns, slack_m=slack_m)
+
+    def why_moves(self, item, place_m, way=None, *, force_N=0.0, impulse_Ns=0.0, slack_m=0.02):
+        """Why stays() of the same says False: that it slides, tips or falls, and from which push or bump on; or what nobody knows. "" where it
+        stays."""
         given = _option('place_m', place_m), _option('way', way), _option('force_N', force_N), _option('impulse_Ns', impulse_Ns), _option('slack_m', slack_m)
-        return _topple.stays(self._whole('stays'), _spots.numbered(self.objects, item, 'object').id, *given)
+        return _topple.why_moves(self._whole('stays'), _spots.numbered(self.objects, item, 'object').id, *given)
+
+    def stays_up_to_N(self, item, place_m, way=None):
+        """The steady push, newtons, up to which an object stays where it is when it is pushed at place_m towards `way`, as stays() has them;
+        0 where nobody knows, inf for the ground."""
+        return _topple.stays_up_to_N(self._whole('stays_up_to_N'), _spots.numbered(self.objects, item, 'object').id, _option('place_m', place_m), _option('way', way))
 
     def object_at(self, place_m, within_m):
         """The id of the object at a place, three numbers, metres in the frame of the result's points: that of the nearest point that belongs
