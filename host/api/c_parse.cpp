@@ -50,6 +50,7 @@ ParseOptions parse_options(const topple_options& o) {
         throw Error(ErrorKind::usage, "corrections_file and corrections_json: give one of both");
     if (o.corrections_file) to.corrections = read_corrections(o.corrections_file);
     if (o.corrections_json) to.corrections = corrections_of(o.corrections_json, "corrections_json");
+    if (o.materials) to.materials = std::make_shared<const Materials>(read_materials(o.materials));
     if (o.cache_file) to.cache_file = o.cache_file;
     to.coordinates = !o.without_coordinates;
     to.isolate = !o.without_isolation;

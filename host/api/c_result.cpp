@@ -18,6 +18,7 @@
 #include "core/result_fields.h"
 #include "io/text.h"
 #include "safety/disturbances.h"
+#include "topple/ask.h"
 #include "topple/frame_labels.h"
 #include "topple/stays.h"
 
@@ -103,6 +104,15 @@ int give_item(const topple_result* result, const std::vector<Item> topple_result
               std::uint64_t index, Item* to, const char* what, topple_status* status) {
     return guarded(status,
                    [&] { give(item(needed(result, "result").*items, index, what), to, what); });
+}
+
+// The first `capacity` of a list, and how many there are.
+template <class T>
+void give_list(const std::vector<T>& from, const char* name, T* to, std::uint64_t capacity,
+               std::uint64_t& count) {
+    count = from.size();
+    if (capacity > 0)
+        std::copy_n(from.begin(), std::min<std::uint64_t>(capacity, count), &needed(to, name));
 }
 
 // NaN: that disturbance was not reckoned with.
@@ -199,8 +209,7 @@ int topple_result_numbers(const topple_result* result, const char* of, uint64_t 
             throw Error(ErrorKind::usage, "field: no numbers " + io::in_quotes(name) + " of " +
                                               io::in_quotes(what) +
                                               "; docs/output.md has the names");
-        *count = found->size();
-        std::copy_n(found->begin(), std::min<std::uint64_t>(capacity, *count), values);
+        give_list(*found, "values", values, capacity, *count);
     });
 }
 
@@ -226,6 +235,60 @@ int topple_result_stays(const topple_result* result, uint64_t index, const doubl
         std::copy_n(&needed(place_m, "place_m"), 3, touch.place_m.begin());
         if (way) std::copy_n(way, 3, touch.way.begin());
         *stays = topple::stays(scene, item(scene.objects, index, "object"), touch);
+    });
+}
+
+int topple_result_stays_up_to(const topple_result* result, uint64_t index, const double* place_m,
+                              const double* way, double* force_N, topple_status* status) {
+    return guarded(status, [&] {
+        needed(force_N, "force_N") = 0;
+        const Scene& scene = scene_of(result);
+        Vec3 place{}, towards{};
+        std::copy_n(&needed(place_m, "place_m"), 3, place.begin());
+        if (way) std::copy_n(way, 3, towards.begin());
+        *force_N = stays_up_to_N(scene, item(scene.objects, index, "object"), place, towards);
+    });
+}
+
+int topple_result_falls_without(const topple_result* result, const int32_t* taken,
+                                uint64_t taken_count, int32_t* ids, uint64_t capacity,
+                                uint64_t* count, topple_status* status) {
+    return guarded(status, [&] {
+        needed(count, "count") = 0;
+        array(taken, "taken", taken_count);
+        std::vector<std::int32_t> falls;
+        for (const Unheld& one :
+             falls_without(scene_of(result), {taken, taken + taken_count}).falls)
+            falls.push_back(one.object);
+        give_list(falls, "ids", ids, capacity, *count);
+    });
+}
+
+int topple_result_removal_order(const topple_result* result, int32_t before, int32_t* ids,
+                                uint64_t capacity, uint64_t* count, topple_status* status) {
+    return guarded(status, [&] {
+        needed(count, "count") = 0;
+        const Scene& scene = scene_of(result);
+        std::vector<std::int32_t> order;
+        for (const auto& step : before == -1 ? removal_steps(scene) : removal_steps(scene, before))
+            order.insert(order.end(), step.begin(), step.end());
+        give_list(order, "ids", ids, capacity, *count);
+    });
+}
+
+int topple_result_held_by(const topple_result* result, int32_t object, int32_t* ids,
+                          double* probabilities, uint64_t capacity, uint64_t* count,
+                          topple_status* status) {
+    return guarded(status, [&] {
+        needed(count, "count") = 0;
+        std::vector<std::int32_t> holders;
+        std::vector<double> likely;
+        for (const Holder& one : held_by(scene_of(result), object)) {
+            holders.push_back(one.object);
+            likely.push_back(one.probability);
+        }
+        give_list(holders, "ids", ids, capacity, *count);
+        if (probabilities) give_list(likely, "probabilities", probabilities, capacity, *count);
     });
 }
 

@@ -3,20 +3,24 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/option_values.h"
 #include "cli/print.h"
 #include "core/json.h"
 #include "core/listed.h"
 #include "core/numbered_object.h"
+#include "core/vectors.h"
 #include "io/json_values.h"
 #include "io/text.h"
 #include "topple/ask.h"
 #include "topple/error.h"
 #include "topple/parse.h"
+#include "topple/stays.h"
 
 namespace topple::cli {
 namespace {
@@ -24,7 +28,7 @@ namespace {
 using Steps = std::vector<std::vector<std::int32_t>>;
 
 struct AskArguments {
-    std::string parsed, without, before, holds;
+    std::string parsed, without, before, holds, push, at;
     bool order = false, json = false;
 };
 
@@ -162,13 +166,54 @@ Answer what_holds(const Scene& scene, std::int32_t object) {
     return out;
 }
 
+// At a place, or at the middle of its top.
+Answer what_push(const Scene& scene, std::int32_t object, std::optional<Vec3> place_m) {
+    if (static_cast<std::size_t>(object) >= scene.objects.size())
+        throw Error(ErrorKind::usage, "--push " + std::to_string(object) + ": the parse has " +
+                                          io::counted(scene.objects.size(), "object") +
+                                          ", from 0 on");
+    const Object& o = scene.objects[object];
+    const Vec3 at = place_m.value_or(along(o.box_middle_m, o.size_m[2] / 2, scene.up));
+    const std::string doubt = why_moves(scene, o, {.place_m = at});
+    const double force_N = doubt.empty() ? stays_up_to_N(scene, o, at) : 0;
+    std::string who = object_text(scene, object);
+    who[0] = 'O';
+    Answer out;
+    if (o.grounded)
+        out.text = who + " is the building, or fixed to it, and stays.\n";
+    else if (!doubt.empty())
+        out.text = "Nobody knows whether " + object_text(scene, object) +
+                   " stays when it is pushed there: " + doubt + ".\n";
+    else
+        out.text = who + " stays up to a steady push of " + io::two_digits(force_N) + " N at " +
+                   io::vector_text(at) + ", to any side. With more, " +
+                   why_moves(scene, o, {.place_m = at, .force_N = 1.001 * force_N}) + ".\n";
+    out.json = {{"schema", "topple.ask/1"},
+                {"question", "push"},
+                {"object", object},
+                {"place_m", io::vector(at)},
+                {"stays_up_to_N", io::number(force_N)},
+                {"doubt", doubt}};
+    return out;
+}
+
 // Numbers are read before the scene, which takes longer.
 using Question = std::function<Answer(const Scene&)>;
 Question question_of(const AskArguments& a) {
     const auto given = [](const std::string& text) { return text.empty() ? 0 : 1; };
-    if (given(a.without) + given(a.before) + given(a.holds) + (a.order ? 1 : 0) != 1)
+    if (given(a.without) + given(a.before) + given(a.holds) + given(a.push) + (a.order ? 1 : 0) !=
+        1)
         throw Error(ErrorKind::usage,
-                    "ask: expected one question: --without, --order, --before or --holds");
+                    "ask: expected one question: --without, --order, --before, --holds or --push");
+    if (given(a.at) && !given(a.push))
+        throw Error(ErrorKind::usage, "--at: it is of a push; give --push, too");
+    if (given(a.push)) {
+        std::optional<Vec3> at;
+        if (given(a.at)) at = parse_vector("--at", a.at, "a place X,Y,Z, metres");
+        return [id = object_number("--push", a.push), at](const Scene& scene) {
+            return what_push(scene, id, at);
+        };
+    }
     if (a.order) return which_order;
     if (!a.without.empty())
         return [ids = object_numbers("--without", a.without)](const Scene& scene) {
@@ -206,6 +251,9 @@ Command add_ask(CLI::App& app) {
     app.add_option("--before", a->before,
                    "What has to go before object N, so that nothing falls with it");
     app.add_option("--holds", a->holds, "What holds object N, and how likely");
+    app.add_option("--push", a->push,
+                   "Up to which steady push object N stays, to any side, and what then happens");
+    app.add_option("--at", a->at, "Where it is pushed, X,Y,Z in metres (default: its top)");
     app.add_flag("--json", a->json, "Print JSON, not sentences");
     return [a] { return run_ask(*a); };
 }

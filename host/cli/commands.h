@@ -57,6 +57,8 @@ inline constexpr const char* generate_purpose =
     "Make a scan of a furnished room, with its ground truth";
 inline constexpr const char* evaluate_purpose =
     "Parse generated rooms and judge the results against the truth";
+inline constexpr const char* rate_purpose =
+    "Compare what people say of objects' safety with what a parse says";
 Command add_lab(CLI::App& app, char** argv);
 
 }  // namespace topple::cli

@@ -43,15 +43,22 @@ std::vector<std::string> split_commas(const std::string& text) {
     return parts;
 }
 
-Vec3 parse_up(const std::string& option, const std::string& text) {
-    const Error bad = wrong_value(option, text, "three numbers X,Y,Z, not all zero");
+Vec3 parse_vector(const std::string& option, const std::string& text, const char* expected) {
+    const Error bad = wrong_value(option, text, expected);
     const std::vector<std::string> parts = split_commas(text);
     if (parts.size() != 3) throw bad;
-    Vec3 up{};
+    Vec3 out{};
     for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t used = leading_number(parts[i], up[i]);
-        if (used == 0 || used != parts[i].size() || !std::isfinite(up[i])) throw bad;
+        const std::size_t used = leading_number(parts[i], out[i]);
+        if (used == 0 || used != parts[i].size() || !std::isfinite(out[i])) throw bad;
     }
+    return out;
+}
+
+Vec3 parse_up(const std::string& option, const std::string& text) {
+    constexpr const char* expected = "three numbers X,Y,Z, not all zero";
+    const Error bad = wrong_value(option, text, expected);
+    Vec3 up = parse_vector(option, text, expected);
     const double length = std::hypot(up[0], up[1], up[2]);
     if (!(length > 0) || !std::isfinite(length)) throw bad;
     for (double& c : up) c /= length;

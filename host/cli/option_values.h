@@ -16,6 +16,9 @@ Error wrong_value(const std::string& option, const std::string& text, const std:
 
 std::vector<std::string> split_commas(const std::string& text);
 
+// Three numbers, "1.5,0,0.8".
+Vec3 parse_vector(const std::string& option, const std::string& text, const char* expected);
+
 // A direction, "0,0,1", of unit length.
 Vec3 parse_up(const std::string& option, const std::string& text);
 

@@ -42,7 +42,7 @@ struct ParseArguments {
     std::optional<std::string> accelerogram, accelerogram_across, accelerogram_up;
     std::optional<double> accelerogram_unit_m_s2;
     std::optional<Acceleration> pga;
-    std::optional<std::string> hazard, corrections, cache;
+    std::optional<std::string> hazard, corrections, cache, materials;
     bool no_cache = false;
     std::string input, backend = "auto", up, disturbance = joined(known_disturbances(), ",");
     ParseOptions options;
@@ -105,6 +105,8 @@ void read_options(ParseArguments& a) {
                                                    a.accelerogram_up, a.accelerogram_unit_m_s2);
     if (a.corrections) a.options.corrections = read_corrections(*a.corrections);
     if (a.hazard) a.options.hazard = read_hazard_curve(*a.hazard);
+    if (a.materials)
+        a.options.materials = std::make_shared<const Materials>(read_materials(*a.materials));
 }
 
 // What all processes of a team do before their part of the parse.
@@ -323,6 +325,10 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
         ->capture_default_str();
     app.add_option("--density", a->options.density_kg_m3, "Density of all objects in kg/m^3")
         ->capture_default_str();
+    app.add_option("--materials", a->materials,
+                   "household, or a file: what things weigh by their names (--corrections) or\n"
+                   "else by their sizes, instead of all by --density; masses' errors then say how\n"
+                   "little that is known");
     app.add_option_function<std::string>(
            "--contents",
            [a](const std::string& text) {

@@ -270,8 +270,8 @@ inline constexpr auto kind<Object> = described(
     field("mass_kg", &Object::mass_kg, "kilograms", &topple_object::mass_kg),
     field("mass_model", &Object::mass_model,
           "`solid`; `closed`: furniture of 18 mm boards around `--contents`; `hollow`: a shell, by "
-          "a correction",
-          Note{.since = "mass_model", .one_of = "\"solid\", \"closed\", \"hollow\""},
+          "a correction; `kind`: as things of its name or size weigh, by `--materials`",
+          Note{.since = "mass_model", .one_of = "\"solid\", \"closed\", \"hollow\", \"kind\""},
           &topple_object::mass_model),
     field("center_of_mass_m", &Object::center_of_mass_m, "metres",
           &topple_object::center_of_mass_m),
@@ -310,8 +310,8 @@ inline constexpr auto kind<Object> = described(
           &topple_object::inertia_kg_m2),
     field("mass_error_kg", &Object::mass_error_kg,
           "one standard error of the mass, by sensor noise, occluded sides and uncertain "
-          "completion, not by density or wrong segmentation. Contents of closed furniture count "
-          "from nothing to twice",
+          "completion, with `--materials` by density, too, not by wrong segmentation. Contents of "
+          "closed furniture count from nothing to twice",
           Note{.since = "mass_error_kg"}, &topple_object::mass_error_kg),
     field("center_of_mass_error_m", &Object::center_of_mass_error_m,
           "the same of its centre along each axis, metres", Note{.since = "mass_error_kg"},

@@ -289,9 +289,12 @@ Table<ObjectId, KnownMass> HandCorrections::masses(ObjectOf object_of, std::size
     Table<ObjectId, std::optional<std::size_t>> wall_by(objects), mass_by(objects);
     for (std::size_t n = 0; n < applied_.size(); ++n) {
         const Correction& c = applied_[n].correction;
-        if (c.kind != Kind::hollow && c.kind != Kind::mass) continue;
         std::set<std::int32_t> about;
         for (const std::int32_t p : located_[n].at) about.insert(object_of(p));
+        if (c.kind == Kind::name)
+            for (const std::int32_t o : about)
+                if (out[o].name.empty()) out[o].name = c.name;
+        if (c.kind != Kind::hollow && c.kind != Kind::mass) continue;
         if (c.kind == Kind::mass && about.size() > 1)
             remark(n,
                    "its spots lie in " + std::to_string(about.size()) +

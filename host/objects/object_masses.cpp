@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "objects/density_prior.h"
 #include "physics/closed_furniture.h"
 #include "physics/hollow_body.h"
 #include "physics/repeated_objects.h"
@@ -67,7 +68,7 @@ void weigh(std::span<const std::int32_t> primitives, double mass_kg,
 }  // namespace
 
 const char* to_string(MassModel model) {
-    constexpr const char* names[] = {"solid", "closed", "hollow"};
+    constexpr const char* names[] = {"solid", "closed", "hollow", "kind"};
     return names[static_cast<std::size_t>(model)];
 }
 
@@ -85,6 +86,16 @@ ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
     for (std::size_t o = 0; o < objects; ++o)
         if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) looks[o] = {};
     const physics::Repeated alike = physics::find_repeated(looks);
+    for (std::size_t o = 0; options.materials && o < objects; ++o) {
+        if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) continue;
+        const Vec3 size_m{looks[o].box_m[0], looks[o].box_m[1], looks[o].height_m};
+        const DensityPrior prior =
+            density_prior(*options.materials, known[o].name, size_m, looks[o].fill);
+        density[o] = inertia_density[o] = prior.median_kg_m3;
+        out.objects[o].model = MassModel::kind;
+        out.objects[o].density_error_share = prior.error_share();
+        looks[o] = {};  // the kinds know what they hold
+    }
     if (options.contents_kg_m3) {
         const std::vector<physics::ClosedOdds> odds = physics::closed_odds(looks, alike);
         for (std::size_t o = 0; o < objects; ++o) {

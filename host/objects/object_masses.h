@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/object_of.h"
@@ -19,12 +20,14 @@ namespace topple {
 struct KnownMass {
     std::optional<double> wall_m;   // it is a shell of that thickness
     std::optional<double> mass_kg;  // of all of it
+    std::string name;               // what it is
 };
 
 enum class MassModel : std::uint8_t {
     solid,   // of the density that was given
     closed,  // furniture of boards around contents
     hollow,  // a shell, as somebody knows
+    kind,    // as things of its name or size weigh
 };
 const char* to_string(MassModel model);
 
@@ -34,6 +37,7 @@ struct ObjectMasses {
         MassModel model = MassModel::solid;
         bool weighed = false;               // its mass is known
         physics::BodyError contents_error;  // 0 for solids
+        double density_error_share = 0;     // of its mass: 0 where a density was given
         physics::Symmetric inertia{};       // about its centre of mass
         double alike_error_kg = 0;          // see physics/repeated_objects.h
     };

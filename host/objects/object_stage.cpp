@@ -101,7 +101,8 @@ void take_mass(const ObjectMasses::Object& mass, Body& object) {
     add_independent(mass.contents_error, object.body_error);
     // What is off of alike things holds what is off of each by itself.
     object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
-    if (mass.weighed) object.body_error.mass_kg = 0;
+    object.density_error_kg = mass.density_error_share * object.candidate.body.mass_kg;
+    if (mass.weighed) object.body_error.mass_kg = object.density_error_kg = 0;
 }
 
 // Of the building no piece that is less likely a thing is told.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -42,7 +43,9 @@ struct Body {
     physics::Instability instability;  // of tipping and sliding together
     MassModel mass_model = MassModel::solid;
     physics::Symmetric inertia{};
-    physics::BodyError body_error;
+    physics::BodyError body_error;  // at its density, as all that follows from it
+    double density_error_kg = 0;    // of its mass, by what its density may be
+    double mass_error_kg() const { return std::hypot(body_error.mass_kg, density_error_kg); }
     double barrier_error_J = 0;
     double seen_error_J = 0;  // the same of what was seen of its foot: risk knows of no more
     Overturning overturning;

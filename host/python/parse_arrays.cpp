@@ -166,6 +166,10 @@ void bind_parse(py::module_& module) {
              [](ParseOptions& o, const std::string& json) { o.corrections = corrections_of(json); })
         .def("set_cache_file",
              [](ParseOptions& o, const std::string& file) { o.cache_file = file; })
+        .def("read_materials",
+             [](ParseOptions& o, const std::string& file) {
+                 o.materials = std::make_shared<const Materials>(read_materials(file));
+             })
         .def("read_hazard_curve",
              [](ParseOptions& o, const std::string& file) { o.hazard = read_hazard_curve(file); });
     module.def(

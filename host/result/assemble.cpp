@@ -103,7 +103,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.mass_model = to_string(from.mass_model);
         to.center_of_mass_m = to_input.place(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
-        to.mass_error_kg = from.body_error.mass_kg;
+        to.mass_error_kg = from.mass_error_kg();
         to.center_of_mass_error_m = to_input.errors(from.body_error.center_m);
         if (!from.grounded) {
             to.barrier_J = from.instability.barrier_J;

@@ -52,6 +52,10 @@ void check_options(const ParseOptions& o) {
         if (const auto wrong = o.hazard->fault())
             throw Error(ErrorKind::usage, "hazard (--hazard): " + *wrong);
     }
+    if (o.materials) {
+        if (const auto wrong = fault_of(*o.materials))
+            throw Error(ErrorKind::usage, "materials (--materials): " + *wrong);
+    }
     if (const auto wrong = fault_of(o.corrections))
         throw Error(ErrorKind::usage, "corrections (--corrections): " + *wrong);
     for (auto name = o.disturbances.begin(); name != o.disturbances.end(); ++name) {

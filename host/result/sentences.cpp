@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/numbered_object.h"
+#include "core/object_name.h"
 #include "io/length_text.h"
 #include "io/text.h"
 #include "physics/drop.h"
@@ -208,6 +209,15 @@ struct Sentence {
 };
 
 constexpr double light_kg = 5;  // one carries it away rather than fastens it
+// What people move about a room by its nature, whatever it weighs.
+bool is_moved_about(const std::string& name) {
+    constexpr const char* words[] = {
+        "chair",  "armchair", "stool", "bench",    "sofa",     "couch",  "table",  "desk",
+        "bed",    "cot",      "bag",   "suitcase", "bin",      "basket", "crate",  "box",
+        "carton", "trolley",  "cart",  "bicycle",  "bike",     "toy",    "walker", "wheelchair",
+        "pram",   "stroller", "plant", "rug",      "mattress", "person"};
+    return std::ranges::any_of(words, [&](const char* word) { return name_has(name, word); });
+}
 // What one person lifts (NIOSH lifting equation, 1991: 23 kg at best), and gets hold of: a chair, a
 // stool. Nobody bolts these to a floor.
 constexpr double carried_kg = 23, carried_m = 1.2;
@@ -249,8 +259,12 @@ std::string at_least_N(double force_N) {
 
 std::string fix_sentence(const Object& object, const Suggestion& what) {
     constexpr double one_strap_m = 1;  // what is wider turns about a single one; set by hand
+    constexpr double high_m = 0.3;     // of where a fall begins; set by hand
     const bool light = object.mass_kg < light_kg, bolted = !what.fasten.wall && what.fasten.floor;
-    if (bolted && !light && is_carried(object))
+    if (what.leg_of < 0 && is_carried(object) && object.fall.drop_m >= high_m)
+        return "Put it lower, or farther from the edge: from here it falls " +
+               io::length_text(object.fall.drop_m) + ".";
+    if ((bolted && !light && is_carried(object)) || is_moved_about(object.name))
         return "Move it to where nobody passes and it stands level, or take it out.";
     std::string text = mend_of(object, what.fasten);
     if (light) text = what.leg_of < 0 ? "Put it elsewhere, or fasten it" : "Fasten it";

@@ -132,10 +132,10 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     SafetyStage out;
     std::vector<safety::RiskObject> all = risk_objects(objects.objects);
     std::vector<double> mass_error_kg;
-    for (const Body& o : objects.objects) mass_error_kg.push_back(o.body_error.mass_kg);
+    for (const Body& o : objects.objects) mass_error_kg.push_back(o.mass_error_kg());
     for (const PossibleBody& thing : objects.possible_things) {
         all.push_back(risk_objects({&thing.body, 1}).front());
-        mass_error_kg.push_back(thing.body.body_error.mass_kg);
+        mass_error_kg.push_back(thing.body.mass_error_kg());
     }
     // `all` goes on with what may be a thing.
     const std::span<const safety::RiskObject> at_risk(all.data(), objects.objects.size());

@@ -19,7 +19,7 @@ TEST_F(Ask, refuses_what_is_no_question) {
     fails(1, "ask mine --order", {"scene.json"});
     put_plane("plane.xyz");
     succeeds("parse plane.xyz -o out --quiet");
-    fails(2, "ask out", {"--without, --order, --before or --holds"});
+    fails(2, "ask out", {"--without, --order, --before, --holds or --push"});
     fails(2, "ask out --order --holds 1", {"expected one question"});
     for (const std::string option : {"--without", "--before", "--holds"}) {
         fails(2, "ask out " + option + " 0", {"object 0", "the building"});
@@ -29,6 +29,10 @@ TEST_F(Ask, refuses_what_is_no_question) {
         expect_failure(2, {"ask", "out", option, ""}, {option, "empty"});
     }
     fails(2, "ask out --without 1,", {"--without"});
+    fails(2, "ask out --push 99", {"--push 99", "1 object, from 0 on"});
+    fails(2, "ask out --order --at 0,0,0", {"--at", "--push"});
+    fails(2, "ask out --push 0 --at 0,0", {"--at 0,0", "X,Y,Z"});
+    EXPECT_THAT(succeeds("ask out --push 0").out, HasSubstr("the building"));
     EXPECT_EQ(succeeds("ask out --order").out, "There is nothing that can be taken away.\n");
     EXPECT_EQ(json::parse(succeeds("ask out --order --json").out).at("steps"), json::array());
 }
@@ -75,6 +79,20 @@ TEST_F(Ask, answers_in_words_and_as_json) {
         fallen += without.at("falls").size();
     }
     EXPECT_GT(fallen, 0u);
+
+    std::size_t known = 0;
+    for (const auto& o : objects) {
+        if (o.at("grounded")) continue;
+        const std::string id = std::to_string(o.at("id").get<int>());
+        const json push = json::parse(succeeds("ask out --json --push " + id).out);
+        const bool doubted = push.at("doubt") != "";
+        EXPECT_EQ(doubted, push.at("stays_up_to_N") == 0) << id;
+        EXPECT_THAT(succeeds("ask out --push " + id).out,
+                    HasSubstr(doubted ? push.at("doubt").get<std::string>()
+                                      : "stays up to a steady push of "));
+        known += !doubted;
+    }
+    EXPECT_GT(known, 0u);
 
     const std::string n = std::to_string(*carriers.begin());
     EXPECT_THAT(succeeds("ask out --before " + n).out, HasSubstr("object " + n));

@@ -14,6 +14,7 @@
 #include "result/scene_json.h"
 #include "topple/corrections.h"
 #include "topple/error.h"
+#include "topple/materials.h"
 #include "topple/motion.h"
 #include "vdb/volume_checks.h"
 
@@ -83,6 +84,10 @@ void read_as_hazard(const fs::path& file) {
     expect(curve.pga_g.size() >= 2 && !curve.fault(), "a hazard curve with a fault");
 }
 
+void read_as_materials(const fs::path& file) {
+    expect(!fault_of(read_materials(file)), "materials with a fault");
+}
+
 void read_as_corrections(const fs::path& file) {
     expect(!fault_of(read_corrections(file)), "corrections with a fault");
 }
@@ -122,6 +127,7 @@ constexpr Reader all[] = {
     {"record_text", "in.txt", read_as_record},
     {"hazard", "in.txt", read_as_hazard},
     {"corrections", "in.json", read_as_corrections},
+    {"materials", "in.json", read_as_materials},
     {"scene", "in.json", [](const fs::path& file) { io::scene_json(io::read_scene_json(file)); }},
     {"result", "in.ply",
      [](const fs::path& file) {

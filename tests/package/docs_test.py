@@ -121,11 +121,12 @@ def check_options(source, program):
 def check_examples(source, program):
     """Files that pages show, which `topple parse` reads before it looks for the scan."""
     problems = []
-    for name, option in (('docs/disturbances.md', '--hazard'), ('docs/corrections.md', '--corrections')):
+    for name, shown, option in (('docs/disturbances.md', 'hazard.txt', '--hazard'), ('docs/disturbances.md', 'materials.json', '--materials'),
+                                ('docs/corrections.md', 'corrections.json', '--corrections')):
         with open(os.path.join(source, name), encoding='utf-8') as file:
-            blocks = re.findall(r'^<!-- example: \S+ -->\n```\w*\n(.*?)^```$', file.read(), re.MULTILINE | re.DOTALL)
+            blocks = re.findall(rf'^<!-- example: {shown} -->\n```\w*\n(.*?)^```$', file.read(), re.MULTILINE | re.DOTALL)
         if len(blocks) != 1:
-            problems.append(f'{name}: {len(blocks)} example blocks')
+            problems.append(f'{name}: {len(blocks)} example blocks of {shown}')
             continue
         with tempfile.NamedTemporaryFile('w', encoding='utf-8') as example:
             example.write(blocks[0])

@@ -73,6 +73,7 @@ void check_mass(const Primitive& p, const Object& o, const Scene& scene) {
     // Its surface passes through some of its voxels, and through some beside them.
     expect(p.volume_m3 <= 3 * (static_cast<double>(p.solid_voxels) + 1) * voxel * voxel * voxel,
            "a primitive is larger than its voxels");
+    if (o.mass_model == "kind") return;
     expect(o.mass_model == "solid" ? std::abs(p.mass_kg - mass) <= 1e-6 * mass + o.mass_error_kg
                                    : p.mass_kg <= mass,
            "a primitive's mass is not its volume's");

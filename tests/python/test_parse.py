@@ -395,6 +395,21 @@ def test_options_of_numpy_are_taken(points, result, device):
     assert parsed.up.tolist() == [0, 0, 1] and parsed.friction == np.float32(0.3) and parsed.density_kg_m3 == 700 and len(parsed.objects) == len(result.objects)
 
 
+def test_things_weigh_by_their_kind(points, result, device, tmp_path):
+    kind = {'name': 'crate', 'size_m': [0.2, 0.25, 0.35], 'fill': 1, 'density_kg_m3': 70, 'spread': 0.4}
+    (tmp_path / 'kinds.json').write_text(json.dumps({'schema': 'topple.materials/1', 'kinds': [kind]}))
+    named = [{'do': 'name', 'at_m': [[1.2, 1.2, 0.7]], 'name': 'crate'}]
+    light, heavy = (quick(points, device, corrections=named, materials=given) for given in (tmp_path / 'kinds.json', None))
+    for a, b in zip(light.objects, heavy.objects):
+        if b.name == 'crate':
+            assert a.mass_model == 'kind' and abs(a.mass_kg * 10 / b.mass_kg - 1) < 1e-6 and a.mass_error_kg > 0.3 * a.mass_kg
+    assert 'crate' in [o.name for o in light.objects]
+    assert 'kind' in [o.mass_model for o in quick(points, device, materials='household').objects]
+    (tmp_path / 'kinds.json').write_text(json.dumps({'schema': 'topple.materials/1', 'kinds': [{**kind, 'spread': -1}]}))
+    with raises('input', 'kinds.json: kind 1: spread is -1; it must be from 0 to 3'):
+        quick(points, device, materials=tmp_path / 'kinds.json')
+
+
 def test_a_cache_is_of_files_and_a_name_of_arrays(points, device, tmp_path):
     with raises('usage', r'^cache_file \(--cache\) /nope/x: .*in memory'):
         quick(points, device, cache_file='/nope/x')

@@ -3,6 +3,7 @@
 import copy
 import os
 import pickle
+import re
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -373,6 +374,10 @@ def test_stays_says_what_may_be_touched(result):
         speed = np.sqrt(2 * 0.3 * 9.80665 * 0.02)  # slides by 2 cm
         assert not result.stays(o, at, impulse_Ns=1.01 * speed * o.mass_kg) and not result.stays(o, at, impulse_Ns=0.1, slack_m=0)
         assert not result.stays(o, np.add(at, [0, 0, 5]), force_N=1)
+        assert result.why_moves(o, at, force_N=1) == '' and 'above its top, by' in result.why_moves(o, np.add(at, [0, 0, 5]), force_N=1)
+        least = result.stays_up_to_N(o, at)
+        assert result.stays(o, at, force_N=0.99 * least)
+        assert re.fullmatch('the push may (set it sliding|tip it): (at that height, )?from .+ N on it may', result.why_moves(o, at, force_N=1.01 * least))
     assert result.stays(0, [0, 0, 0], force_N=1e6)
 
 

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
         {"devices", "List every device of every backend, or why one is missing", add_devices},
         {"generate", generate_purpose, lab},
         {"evaluate", evaluate_purpose, lab},
+        {"rate", rate_purpose, lab},
         {"perf", "Measure every kernel, stage and parse on every backend", add_perf}};
     return run_command_line(commands, argc, argv, print_error);
 }

@@ -15,6 +15,7 @@
 #include "topple/error.h"
 #include "topple/frames_view.h"
 #include "topple/input.h"
+#include "topple/materials.h"
 #include "topple/motion.h"
 #include "topple/scene.h"
 
@@ -45,6 +46,9 @@ struct ParseOptions {
     std::uint64_t max_memory_bytes = 0;  // more is refused, or ends the parse. 0: 3/4 of what is
     // free, and of inputs of megabytes no more than 2 GB for each begun one
     double density_kg_m3 = 700;
+    // What things weigh by their names (corrections) or their sizes, with errors that say how
+    // little that is known, instead of all by that density; null: none.
+    std::shared_ptr<const Materials> materials;
     double friction = 0.3;
     // What closed furniture (Object::mass_model) holds, over its inner volume; none: all is solid.
     std::optional<double> contents_kg_m3 = 68;

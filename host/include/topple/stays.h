@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+
 #include "topple/scene.h"
 
 namespace topple {
@@ -45,5 +47,14 @@ struct Touch {
 // neither zero nor level (within 5 degrees) and of unit length (within 0.001), a force, an impulse
 // or a slack that is less than 0 or not finite, an object that is none of the scene's.
 bool stays(const Scene& scene, const Object& object, const Touch& touch);
+
+// The same, and why not: "" where it stays, else a sentence: that it slides, tips or falls, by
+// which figure; that its top is lower than the place; or what of it nobody knows.
+std::string why_moves(const Scene& scene, const Object& object, const Touch& touch);
+
+// The steady push at a place that way up to which it stays, newtons: 0 where nobody knows, infinite
+// for what is grounded. Throws as stays() does.
+double stays_up_to_N(const Scene& scene, const Object& object, const Vec3& place_m,
+                     const Vec3& way = {});
 
 }  // namespace topple

@@ -190,6 +190,9 @@ typedef struct topple_options {
     const char* cache_file; /* what does not depend on corrections (topple/parse.h); NULL: none */
     double tile_m;          /* not 0: any cloud file is parsed in blocks (topple/parse.h) */
     double stability_level; /* W that objects are to stand, as a share of m g h; 0 */
+    /* What things weigh by name or size: "household" or a file (topple/materials.h). NULL: all are
+     * of density_kg_m3. */
+    const char* materials;
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
@@ -244,7 +247,8 @@ typedef struct topple_object {
     const char *why, *advice; /* sentences */
     /* one standard error each, as barrier_error_J */
     double mass_error_kg, center_of_mass_error_m[3], footprint_error_m;
-    const char* mass_model;  /* "solid", "closed" (boards around contents) or "hollow" (by hand) */
+    /* "solid", "closed" (boards around contents), "hollow" (by hand) or "kind" (by materials) */
+    const char* mass_model;
     double inertia_kg_m2[9]; /* about its centre of mass, along the input's axes, row-major */
     /* to overturn it slowly (struct Overturning of topple/scene.h); NaN where it can't tip */
     double tilt_deg, tilt_error_deg, overturning_direction[3];
@@ -379,6 +383,24 @@ const uint64_t* topple_result_point_index(const topple_result* result);
 int topple_result_stays(const topple_result* result, uint64_t index, const double* place_m,
                         const double* way, double force_N, double impulse_Ns, double slack_m,
                         int* stays, topple_status* status);
+
+/* The steady push there up to which it stays, newtons: 0 where nobody knows. As above. */
+int topple_result_stays_up_to(const topple_result* result, uint64_t index, const double* place_m,
+                              const double* way, double* force_N, topple_status* status);
+/* Questions before things are taken away (topple/ask.h). `count` becomes how many ids the answer
+ * has; the first `capacity` of them go to `ids`. What falls, in that order, once `taken` is gone:
+ */
+int topple_result_falls_without(const topple_result* result, const int32_t* taken,
+                                uint64_t taken_count, int32_t* ids, uint64_t capacity,
+                                uint64_t* count, topple_status* status);
+/* an order in which all can be taken away; or what has to go before object `before`, which comes
+ * last; -1: all; things that carry one another in a ring follow on one another; */
+int topple_result_removal_order(const topple_result* result, int32_t before, int32_t* ids,
+                                uint64_t capacity, uint64_t* count, topple_status* status);
+/* and what holds an object, the likeliest first; probabilities: as many, or NULL. */
+int topple_result_held_by(const topple_result* result, int32_t object, int32_t* ids,
+                          double* probabilities, uint64_t capacity, uint64_t* count,
+                          topple_status* status);
 
 /* What pixels of depth frames show of a result (topple/frame_labels.h), which must hold its points'
  * coordinates, and need not outlive it. May be asked from several threads at once. */

@@ -10,6 +10,7 @@ namespace topple::cli {
 
 Command add_generate(CLI::App& app);
 Command add_evaluate(CLI::App& app);
+Command add_rate(CLI::App& app);
 
 // Adds --furniture, which sets whether generated rooms are the varied ones.
 void add_furniture(CLI::App& app, bool& varied);

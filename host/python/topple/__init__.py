@@ -232,8 +232,18 @@ class Result:
         is not hollow; touches beside the line above its centre of mass, which turn it; many of them; what it carries or holds. Raises Error of
         kind "usage" for what makes no sense: a place that is not finite, a way that is not level or not of unit length, a figure that is
         negative or not finite; and for a result that was pickled."""
+        return not self.why_moves(item, place_m, way, force_N=force_N, impulse_Ns=impulse_Ns, slack_m=slack_m)
+
+    def why_moves(self, item, place_m, way=None, *, force_N=0.0, impulse_Ns=0.0, slack_m=0.02):
+        """Why stays() of the same says False: that it slides, tips or falls, and from which push or bump on; or what nobody knows. "" where it
+        stays."""
         given = _option('place_m', place_m), _option('way', way), _option('force_N', force_N), _option('impulse_Ns', impulse_Ns), _option('slack_m', slack_m)
-        return _topple.stays(self._whole('stays'), _spots.numbered(self.objects, item, 'object').id, *given)
+        return _topple.why_moves(self._whole('stays'), _spots.numbered(self.objects, item, 'object').id, *given)
+
+    def stays_up_to_N(self, item, place_m, way=None):
+        """The steady push, newtons, up to which an object stays where it is when it is pushed at place_m towards `way`, as stays() has them;
+        0 where nobody knows, inf for the ground."""
+        return _topple.stays_up_to_N(self._whole('stays_up_to_N'), _spots.numbered(self.objects, item, 'object').id, _option('place_m', place_m), _option('way', way))
 
     def object_at(self, place_m, within_m):
         """The id of the object at a place, three numbers, metres in the frame of the result's points: that of the nearest point that belongs
@@ -333,7 +343,7 @@ def _components(accelerogram):
 @_named
 def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, motion_unit=None,
-          motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, stability_level=0.0, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
+          motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, stability_level=0.0, grouping_time_s=None, materials=None, corrections=None, cache_file=None, normals=None,
           name=None, viewpoint=None, colours=None, frames=None, camera_to_world=None, intrinsics=None, colour_intrinsics=None,
           tile_m=0.0, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
@@ -365,6 +375,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. Give them where you have them: they help to
     tell things apart that touch (docs/formats.md). progress(stage, done) is called as stages start and go on: done is about
     how much of the whole parse is done, 0 to 1, and never falls. pga_m_s2: the peak of earthquakes in m/s2, of which 0.3 g are 2.94. contents_kg_m3: of closed furniture, or None where all is solid.
+    materials: "household" or a file (docs/disturbances.md): what things weigh by their names or sizes.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
     depend on them, so that the next parse of that file or folder is quick; of what is in memory nothing is kept, and it is
@@ -399,6 +410,8 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         raise _usage('accelerogram_unit: there is no accelerogram whose unit it could be')
     if hazard is not None:
         options.read_hazard_curve(_file('hazard', hazard))
+    if materials is not None:
+        options.read_materials(_file('materials', materials))
     if isinstance(corrections, (str, os.PathLike)):
         options.read_corrections(os.fspath(corrections))
     elif corrections is not None:

@@ -197,7 +197,7 @@ function isAdvised(object) {
 // "44.2 kg if solid", "54 kg"
 function shortMass(scene, object) {
   const mass = number(object.mass_kg, 'kg');
-  return massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || '');
+  return massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell', kind: ' by kind'}[object.mass_model] || '');
 }
 
 // A paragraph, where there is a text.

@@ -129,6 +129,7 @@ function massText(scene, object) {
   if (massIsGiven(scene, object)) return `${mass}, as given by hand`;
   if (object.mass_model === 'solid' || !object.mass_model) return `${mass}, if it is solid throughout, of ${density}`;
   if (object.mass_model === 'closed') return `${mass}, if of boards at ${density} around contents`;
+  if (object.mass_model === 'kind') return `${mass}, as things of its ${object.name ? 'name' : 'size'} weigh`;
   return `${mass}, ${object.mass_model}`;
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "api/c_result.h"
+
 #include "host/api/c_api.h"
 #include "host/pipeline/small_walk.h"
 #include "points/formats/read_cloud.h"
+#include "topple/ask.h"
 #include "topple/frame_labels.h"
 #include "topple/parse.h"
 
@@ -107,6 +110,45 @@ TEST_F(CApi, SaysWhatMayBeTouched) {
               TOPPLE_ERROR_USAGE);
     EXPECT_STREQ(status.message, "place_m is NULL");
     EXPECT_EQ(topple_result_stays(result, 99, level, level, 1, 0, 0.02, &stays, &status),
+              TOPPLE_ERROR_USAGE);
+}
+
+TEST_F(CApi, SaysWhatHoldsWhatAndHowFirmly) {
+    options.disturbances = 0;
+    ASSERT_EQ(parsed(), TOPPLE_OK) << status.message;
+    const topple_object crate = object(1);
+    double least = -1;
+    ASSERT_EQ(
+        topple_result_stays_up_to(result, 1, crate.center_of_mass_m, nullptr, &least, &status),
+        TOPPLE_OK);
+    EXPECT_GT(least, 0);
+    for (const auto& [share, expected] : {std::pair{0.99, 1}, {1.01, 0}}) {
+        int stays = -1;
+        ASSERT_EQ(topple_result_stays(result, 1, crate.center_of_mass_m, nullptr, share * least, 0,
+                                      0.02, &stays, &status),
+                  TOPPLE_OK);
+        EXPECT_EQ(stays, expected) << share;
+    }
+    const Scene& scene = result->result.scene;
+    std::uint64_t count = 0;
+    std::vector<std::int32_t> ids(scene.objects.size(), -7);
+    const std::int32_t taken = 1;
+    ASSERT_EQ(
+        topple_result_falls_without(result, &taken, 1, ids.data(), ids.size(), &count, &status),
+        TOPPLE_OK);
+    EXPECT_EQ(count, falls_without(scene, {1}).falls.size());
+    ASSERT_EQ(topple_result_removal_order(result, -1, ids.data(), 1, &count, &status), TOPPLE_OK);
+    EXPECT_EQ(count, scene.objects.size() - 1) << "all but the building";
+    EXPECT_EQ(ids[0], removal_steps(scene)[0][0]);
+    EXPECT_EQ(ids[1], -7) << "no more than there is room for";
+    double likely[8] = {};
+    ASSERT_EQ(topple_result_held_by(result, 1, ids.data(), likely, 8, &count, &status), TOPPLE_OK);
+    ASSERT_GE(count, 1u);
+    EXPECT_EQ(ids[0], held_by(scene, 1)[0].object);
+    EXPECT_EQ(likely[0], held_by(scene, 1)[0].probability);
+    EXPECT_EQ(topple_result_held_by(result, 99, ids.data(), nullptr, 8, &count, &status),
+              TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_result_falls_without(result, nullptr, 1, ids.data(), 8, &count, &status),
               TOPPLE_ERROR_USAGE);
 }
 

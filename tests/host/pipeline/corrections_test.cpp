@@ -72,7 +72,7 @@ class CorrectedRoom : public testing::Test {
         return room.cloud;
     }
     static ParseResult parsed(std::vector<Correction> corrections, std::uint64_t seed = 1,
-                              double voxel_m = 0) {
+                              double voxel_m = 0, std::shared_ptr<const Materials> materials = {}) {
         const auto file = folder_->path() / "room.ply";
         if (!std::filesystem::exists(file)) scenes::write_cloud(file, cloud());
         ParseOptions options = on(device::open_device("native"));
@@ -80,6 +80,7 @@ class CorrectedRoom : public testing::Test {
         options.seed = seed;
         options.voxel_m = voxel_m;
         options.corrections = std::move(corrections);
+        options.materials = std::move(materials);
         options.cache_file = folder_->path() / ("cache" + std::to_string(voxel_m));
         return parse(file, options);
     }
@@ -133,6 +134,28 @@ class SlowCorrectedRoom : public CorrectedRoom {};
 TEST_F(SlowCorrectedRoom, IsSoWhateverTheSeedAndTheVoxels) {
     expect_known(7, 0.03);
     expect_known(8, 0.016);
+}
+
+// A name says more of what a thing weighs than its size, a mass by hand all.
+TEST_F(CorrectedRoom, WeighsByNamesAndSizes) {
+    const auto kinds = std::make_shared<const Materials>(Materials{
+        {"brick", {0.06, 0.1, 0.2}, 1, 1800, 0.1}, {"crate", {0.2, 0.25, 0.35}, 1, 120, 0.5}});
+    const auto weighed = [&](std::vector<Correction> corrections) {
+        return parsed(std::move(corrections), 1, 0, kinds).scene;
+    };
+    const double volume_m3 = 0.25 * 0.2 * 0.35;
+    const Scene plain = weighed({}), named = weighed({name(on_box, "two bricks")}),
+                known = weighed({mass({on_box}, 12.5)});
+    const Object &by_size = object_at(plain, on_box), &by_name = object_at(named, on_box);
+    EXPECT_EQ(by_size.mass_model, "kind");
+    EXPECT_NEAR(by_size.mass_kg, 120 * volume_m3, 0.5 * 120 * volume_m3) << "as a crate, mostly";
+    EXPECT_GT(by_size.mass_error_kg, 0.4 * by_size.mass_kg);
+    EXPECT_NEAR(by_name.mass_kg, 1800 * volume_m3, 0.1 * 1800 * volume_m3);
+    EXPECT_LT(by_name.mass_error_kg, 0.2 * by_name.mass_kg);
+    EXPECT_GT(by_name.mass_error_kg, 0.09 * by_name.mass_kg);
+    EXPECT_NEAR(by_name.barrier_J / by_size.barrier_J, by_name.mass_kg / by_size.mass_kg, 1e-6);
+    EXPECT_NEAR(object_at(known, on_box).mass_kg, 12.5, 1e-9);
+    EXPECT_EQ(object_at(known, on_box).mass_error_kg, 0);
 }
 
 // A shell is harder to turn than a block of the same mass, and weighs what its sides do.

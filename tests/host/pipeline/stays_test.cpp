@@ -125,6 +125,55 @@ TEST(Stays, BumpsThatMakeItFallAtTheHeightsNextToThePlace) {
     EXPECT_FALSE(stays(0.5, {}));
 }
 
+TEST(Stays, SaysWhyNot) {
+    StandingBox box;
+    const auto why = [&](const Touch& touch) { return why_moves(box.scene, box.box(), touch); };
+    EXPECT_EQ(why({.place_m = top_place, .force_N = 39}), "");
+    EXPECT_EQ(why({.place_m = top_place, .force_N = 40}),
+              "the push may tip it: at that height, from 39 N on it may");
+    EXPECT_EQ(why({.place_m = middle_place, .force_N = 59}),
+              "the push may set it sliding: from 59 N on it may");
+    EXPECT_EQ(why({.place_m = middle_place, .impulse_Ns = 15.4}),
+              "the bump may set it sliding by 0.10 m");
+    EXPECT_EQ(why({.place_m = {0, 0, 1.5}, .force_N = 1}), "the place is above its top, by 0.50 m");
+    EXPECT_EQ(why({.place_m = {0, 0, -0.5}, .force_N = 1}),
+              "the place is lower than what it stands on, by 0.50 m");
+    std::ranges::fill(box.box().barrier_by_direction.blow_Ns, 3.0);
+    EXPECT_EQ(why({.place_m = middle_place, .impulse_Ns = 4}),
+              "the bump may make it fall: there, from 3.0 N s on it may");
+    box.box().piece_of = 7;
+    EXPECT_EQ(why({.place_m = top_place}),
+              "it is likelier than not a piece of object 7: ask about that one");
+    box.box().seen_enough = false;
+    EXPECT_EQ(why({.place_m = top_place}), "the scan does not show what holds it");
+    EXPECT_EQ(why_moves(box.scene, box.scene.objects[0], {.force_N = 1e6}), "") << "the ground";
+}
+
+TEST(Stays, UpToTheLeastPushThere) {
+    StandingBox box;
+    constexpr double gravity = StandingBox::gravity;
+    EXPECT_NEAR(stays_up_to_N(box.scene, box.box(), top_place), 4 * gravity, 1e-9) << "tips";
+    EXPECT_NEAR(stays_up_to_N(box.scene, box.box(), middle_place), 6 * gravity, 1e-9) << "slides";
+    box.box().barrier_by_direction.push_N[4] = 10;  // east
+    EXPECT_NEAR(stays_up_to_N(box.scene, box.box(), top_place, eastwards), 10, 1e-9);
+    EXPECT_NEAR(stays_up_to_N(box.scene, box.box(), top_place, {-1, 0, 0}), 4 * gravity, 1e-9);
+    EXPECT_EQ(stays_up_to_N(box.scene, box.box(), {0, 0, 2}), 0) << "beyond it";
+    box.box().barrier_by_direction.push_N[4] = unknown;
+    EXPECT_EQ(stays_up_to_N(box.scene, box.box(), top_place), 0);
+    EXPECT_EQ(stays_up_to_N(box.scene, box.scene.objects[0], top_place), unbounded);
+}
+
+// A mass that goes by what such things weigh is off by factors: two errors below 20 kg +- 20 kg are
+// 5 kg, of another mass nothing is known.
+TEST(Stays, MassesByKindAreOffByFactors) {
+    StandingBox box;
+    box.box().mass_error_kg = 20;
+    EXPECT_FALSE(box.stays({.place_m = middle_place, .force_N = 1}));
+    box.box().mass_model = "kind";
+    EXPECT_TRUE(box.stays({.place_m = middle_place, .force_N = 14.7}));
+    EXPECT_FALSE(box.stays({.place_m = middle_place, .force_N = 14.8}));
+}
+
 // At its middle the energy of P is P^2 / (2 M), that of the barrier at 17.4 N s; near its top it is
 // 1 + 0.44^2 / 0.0967 times as much.
 TEST(Stays, AnInfiniteBlowIsNoPromise) {
