@@ -243,11 +243,13 @@ Json colours_json(const PackedView& view) {
 }
 
 // What the page is to say of disturbances and how it draws them.
-Json disturbances_json() {
+Json disturbances_json(const Scene& scene) {
     static constexpr std::array strengths{"visits", "mean", "speed"};
     auto kinds = Json::array();
     for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
-        const auto& [cause, event, one_event, column, doing, mend, push, arrows, figure] =
+        // What few runs have says nothing where it is missing.
+        if (kind->acts && !scene.fields.contains(kind->name)) continue;
+        const auto& [cause, event, one_event, column, doing, mend, push, arrows, figure, light] =
             kind->words;
         kinds.push_back({{"name", kind->name},
                          {"cause", cause},
@@ -351,7 +353,7 @@ Report::Report(const Scene& scene, bool with_surfaces, ReportWords words)
     for (const char* later : {"colours", "view"}) json[later] = nullptr;
     json["drawings"] = deflated(landscapes_json(scene).dump());
     json["ramp"] = {{"colours", ramp}, {"bands", bands}};
-    json["disturbance_kinds"] = disturbances_json();
+    json["disturbance_kinds"] = disturbances_json(scene);
     json["unsafety_ramp"] = unsafety_ramp;
     json["unranked_colour"] = unranked_colour;
     json["shakings"] = shakings_json();

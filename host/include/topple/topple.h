@@ -141,7 +141,14 @@ typedef struct topple_allocator {
     void* user;
 } topple_allocator;
 
-enum { TOPPLE_HUMAN = 1, TOPPLE_WIND = 2, TOPPLE_EARTHQUAKE = 4 };
+enum { TOPPLE_HUMAN = 1, TOPPLE_WIND = 2, TOPPLE_EARTHQUAKE = 4, TOPPLE_REACH = 8 };
+enum {
+    TOPPLE_ADULTS = 1,
+    TOPPLE_CHILDREN = 2,
+    TOPPLE_TODDLERS = 4,
+    TOPPLE_ELDERLY = 8,
+    TOPPLE_WHEELCHAIR = 16
+};
 enum { TOPPLE_LOG_INFO = 0, TOPPLE_LOG_WARNING = 1 };
 
 /* Options of a parse; the command line's --help and topple/parse.h say more of each. NaN means
@@ -190,6 +197,7 @@ typedef struct topple_options {
     const char* cache_file; /* what does not depend on corrections (topple/parse.h); NULL: none */
     double tile_m;          /* not 0: any cloud file is parsed in blocks (topple/parse.h) */
     double stability_level; /* W that objects are to stand, as a share of m g h; 0 */
+    uint32_t people;        /* TOPPLE_ADULTS | TOPPLE_CHILDREN | ..: who is in the room; adults */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
