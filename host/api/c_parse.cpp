@@ -7,12 +7,32 @@
 #include "export/formats.h"
 
 namespace topple::c_api {
+namespace {
+
+// A bit for each name, in their order.
+std::vector<std::string> of_bits(const std::string& what, std::uint32_t bits,
+                                 const std::vector<std::string>& names, const std::string& last) {
+    std::vector<std::string> out;
+    std::uint32_t bit = 1;
+    for (const std::string& name : names) {
+        if (bits & bit) out.push_back(name);
+        bit <<= 1;
+    }
+    if (bits >= bit)
+        throw Error(ErrorKind::usage,
+                    what + ": " + std::to_string(bits) + " has bits beyond " + last);
+    return out;
+}
+
+}  // namespace
+
 topple_options default_options() {
     const ParseOptions from;
     topple_options o{};
     o.size = sizeof(o);
     for (const NumberOption& option : number_options) option.to_c(from, o);
-    o.disturbances = TOPPLE_HUMAN | TOPPLE_WIND | TOPPLE_EARTHQUAKE;
+    o.disturbances = TOPPLE_HUMAN | TOPPLE_WIND | TOPPLE_EARTHQUAKE | TOPPLE_REACH;
+    o.people = TOPPLE_ADULTS;
     o.walks = from.walks;
     o.seed = from.seed;
     return o;
@@ -23,17 +43,9 @@ ParseOptions parse_options(const topple_options& o) {
     if (o.device) to.device = o.device->device;
     for (const NumberOption& option : number_options) option.from_c(o, to);
     if (o.up[0] != 0 || o.up[1] != 0 || o.up[2] != 0) to.up = Vec3{o.up[0], o.up[1], o.up[2]};
-    to.disturbances.clear();
-    // A bit for each, in their order.
-    std::uint32_t bit = 1;
-    for (const std::string& name : known_disturbances()) {
-        if (o.disturbances & bit) to.disturbances.push_back(name);
-        bit <<= 1;
-    }
-    if (o.disturbances >= bit) {
-        throw Error(ErrorKind::usage, "disturbances: " + std::to_string(o.disturbances) +
-                                          " has bits beyond those of topple_disturbance_name()");
-    }
+    to.disturbances = of_bits("disturbances", o.disturbances, known_disturbances(),
+                              "those of topple_disturbance_name()");
+    to.people = of_bits("people", o.people, known_people(), "TOPPLE_WHEELCHAIR");
     to.walks = o.walks;
     to.seed = o.seed;
     to.max_memory_bytes = o.max_memory_bytes;

@@ -44,7 +44,8 @@ struct ParseArguments {
     std::optional<Acceleration> pga;
     std::optional<std::string> hazard, corrections, cache, materials;
     bool no_cache = false;
-    std::string input, backend = "auto", up, disturbance = joined(known_disturbances(), ",");
+    std::string input, backend = "auto", up, disturbance = joined(known_disturbances(), ","),
+                       people = joined(ParseOptions{}.people, ",");
     ParseOptions options;
     std::optional<std::string> out;
     std::optional<double> voxel_m, tile_m;
@@ -85,6 +86,7 @@ void read_options(ParseArguments& a) {
     if (!a.up.empty()) a.options.up = parse_up("--up", a.up);
     if (a.pga) a.options.pga_m_s2 = a.pga->m_s2;
     a.options.disturbances = split_commas(a.disturbance);
+    a.options.people = split_commas(a.people);
     if (!a.motion_up.empty()) a.motion_file.up = parse_up("--motion-up", a.motion_up);
     if (a.accelerogram_unit_m_s2 && !a.accelerogram)
         throw Error(ErrorKind::usage,
@@ -243,6 +245,10 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option("--disturbance", a->disturbance,
                    "What may disturb the scene: " + joined(known_disturbances(), ", ") +
                        ", separated by commas")
+        ->capture_default_str();
+    app.add_option("--people", a->people,
+                   "Who is in the room: " + joined(known_people(), ", ") +
+                       ",\nseparated by commas; children, toddlers and elderly reach for things")
         ->capture_default_str();
     app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
     app.add_option_function<std::string>(

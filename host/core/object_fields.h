@@ -32,6 +32,21 @@ inline constexpr auto kind<Alternative> = described(
                .or_none = true}));
 
 template <>
+inline constexpr auto kind<Hold> = described(
+    "Hold", "What one kind of people does to a thing within reach, from the floor.",
+    field("by", &Hold::by, "the kind of people, as in `--people`"),
+    field("act", &Hold::act,
+          "`pull`: as high as it is reached; `lean`: at 0.6 m above the floor, or where it is "
+          "nearest to that; `climb`: onto its front",
+          Note{.one_of = "\"pull\", \"lean\", \"climb\""}),
+    field("chance", &Hold::chance, "of it per hold, 0 to 1, from all sides"),
+    field("fall_chance", &Hold::fall_chance, "the same of those that upset it"),
+    field("place_m", &Hold::place_m,
+          "where one of them acts, one that upsets it if any does, metres; of who climbs where "
+          "their weight does, before its front"),
+    field("force_N", &Hold::force_N, "that one's force, newtons"));
+
+template <>
 inline constexpr auto kind<PossibleThing> = described(
     "PossibleThing", "What was counted as the building and may be a thing by itself.",
     field("primitives", &PossibleThing::primitives, "its parts", Note{.rule = Rule::primitives}),
@@ -354,6 +369,9 @@ inline constexpr auto kind<Object> = described(
           Note{.since = "unsafety_category"}),
     field("fall_chance", &Object::fall_chance,
           "by disturbance: chance per event, 0 to 1, that it falls", Note{.since = "fall"}),
+    field("holds", &Object::holds,
+          "what people do to it within their reach; written where somebody does",
+          Note{.since = "holds", .if_any = true}),
     field("unsafety", &Object::unsafety,
           "1 (safest) to 10: 1 + 9 log(1 + 999 r / r_max) / log 1000 of its largest risk r. Ranks "
           "this scene only: the worst has 10 however harmless. NaN: not `seen_enough`, or no "

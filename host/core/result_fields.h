@@ -117,6 +117,8 @@ inline constexpr auto kind<Scene> = described(
           "the peaks' logarithm), `floor_amplification`, `hazard_from_g`, `tolerable_J`, as far as "
           "they apply",
           Note{.since = "events"}),
+    field("people", &Scene::people, "the kinds of people in it, `--people`; none: adults alone",
+          Note{.since = "people", .if_any = true}),
     field("primitives", &Scene::primitives, "the parts that objects are made of, by id",
           &topple_scene::primitives),
     field("objects", &Scene::objects, "rigid bodies, by id", &topple_scene::objects),

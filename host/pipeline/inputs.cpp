@@ -94,9 +94,8 @@ void take_options(const ParseOptions& options) {
 ParseResult noted(ParseResult result, const ParseOptions& options,
                   std::vector<std::string> notes = {}) {
     std::vector<std::string> all;
-    for (const std::string& name : options.disturbances) {
-        const auto doubt = safety::disturbance_kind(name).doubt;
-        if (std::string asked = doubt ? doubt(options) : ""; !asked.empty())
+    for (const safety::DisturbanceKind* kind : safety::acting_kinds(options)) {
+        if (std::string asked = kind->doubt ? kind->doubt(options) : ""; !asked.empty())
             all.push_back(std::move(asked));
     }
     all.insert(all.end(), notes.begin(), notes.end());

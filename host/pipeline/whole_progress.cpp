@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "safety/disturbances.h"
+
 namespace topple {
 namespace {
 
@@ -15,7 +17,7 @@ struct StageShares {
     std::array<double, 3> percent;
 };
 constexpr int none = -1;  // there is no such stage
-constexpr std::array<StageShares, 33> table{{
+constexpr std::array<StageShares, 34> table{{
     {"cache", {0, 0, 0}},
     {"sorting", {none, none, 1.2}},
     {"spacing", {none, none, 6.9}},
@@ -44,6 +46,7 @@ constexpr std::array<StageShares, 33> table{{
     {"field human", {1.9, 0.9, 3.9}},
     {"field wind", {1.5, 2.8, 0.4}},
     {"field earthquake", {11, 3.7, 12}},
+    {"field reach", {0.5, 0.5, 0.5}},
     {"falls", {0.1, 0.2, 0}},
     {"gusts", {0, 0, 0}},
     {"risk", {1.5, 0.6, 0.9}},
@@ -55,9 +58,10 @@ constexpr std::string_view field = "field ";
 }  // namespace
 
 WholeProgress::WholeProgress(Input input, const ParseOptions& options)
-    : disturbances_(options.disturbances),
-      whole_(input == Input::frames ? Way::frames : Way::cloud),
-      way_(whole_) {}
+    : whole_(input == Input::frames ? Way::frames : Way::cloud), way_(whole_) {
+    for (const safety::DisturbanceKind* kind : safety::acting_kinds(options))
+        disturbances_.emplace_back(kind->name);
+}
 
 double WholeProgress::percent(std::size_t stage, Way way) {
     return table[stage].percent[static_cast<std::size_t>(way)];

@@ -20,6 +20,7 @@
 #include "result/solids_file.h"
 #include "result/things_json.h"
 #include "result/write_ply.h"
+#include "safety/disturbances.h"
 #include "scale/tiled_result.h"
 #include "topple/parse.h"
 #include "topple/session.h"
@@ -65,11 +66,16 @@ std::vector<ObjectSurface> surfaces_of(const ParseResult& result, const vdb::Vox
 // What parses so again, as far as the result tells: what was reckoned with is asked for again.
 std::vector<std::string> command_for(const Scene& scene, const std::filesystem::path& folder) {
     std::vector<std::string> words{"topple", "parse", scene.source};
-    std::string disturbances;
+    std::string disturbances, people;
     for (const auto& [name, field] : scene.fields)
         disturbances.append(disturbances.empty() ? "" : ",").append(name);
-    if (!scene.fields.empty() && scene.fields.size() < known_disturbances().size())
+    for (const std::string& name : scene.people)
+        people.append(people.empty() ? "" : ",").append(name);
+    ParseOptions all;
+    if (!scene.people.empty()) all.people = scene.people;
+    if (!scene.fields.empty() && scene.fields.size() < safety::acting_kinds(all).size())
         words.insert(words.end(), {"--disturbance", disturbances});
+    if (!people.empty()) words.insert(words.end(), {"--people", people});
     words.insert(words.end(), {"-o", folder.string()});
     return words;
 }

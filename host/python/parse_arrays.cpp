@@ -141,6 +141,7 @@ void bind_parse(py::module_& module) {
     bound.def(py::init<>())
         .def_readwrite("up", &ParseOptions::up)
         .def_readwrite("disturbances", &ParseOptions::disturbances)
+        .def_readwrite("people", &ParseOptions::people)
         .def_readwrite("isolate", &ParseOptions::isolate)
         .def_readwrite("seed", &ParseOptions::seed)
         .def_readwrite("max_memory_bytes", &ParseOptions::max_memory_bytes)

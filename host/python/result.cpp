@@ -181,6 +181,7 @@ void bind_items(py::module_& module) {
     bind_item<Advice>(module);
     bind_item<Fragility>(module);
     bind_item<Alternative>(module);
+    bind_item<Hold>(module);
     bind_item<PossibleThing>(module);
     bind_item<Fall>(module);
     bind_landscape(module);

@@ -243,16 +243,19 @@ Json colours_json(const PackedView& view) {
 }
 
 // What the page is to say of disturbances and how it draws them.
-Json disturbances_json() {
+Json disturbances_json(const Scene& scene) {
     static constexpr std::array strengths{"visits", "mean", "speed"};
     auto kinds = Json::array();
     for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
-        const auto& [cause, event, one_event, column, doing, mend, push, arrows, figure] =
-            kind->words;
+        // What few runs have says nothing where it is missing.
+        if (kind->acts && !scene.fields.contains(kind->name)) continue;
+        const safety::DisturbanceWords& words = kind->words;
+        const auto& arrows = words.arrows;
+        const auto& figure = words.figure;
         kinds.push_back({{"name", kind->name},
-                         {"cause", cause},
-                         {"event", event},
-                         {"one_event", one_event},
+                         {"cause", words.cause},
+                         {"event", words.event},
+                         {"one_event", words.one_event},
                          {"everyday", kind->everyday},
                          {"may_be_left_out", kind->left_out_below_none != nullptr},
                          {"strength", strengths[static_cast<std::size_t>(arrows.strength)]},
@@ -351,7 +354,7 @@ Report::Report(const Scene& scene, bool with_surfaces, ReportWords words)
     for (const char* later : {"colours", "view"}) json[later] = nullptr;
     json["drawings"] = deflated(landscapes_json(scene).dump());
     json["ramp"] = {{"colours", ramp}, {"bands", bands}};
-    json["disturbance_kinds"] = disturbances_json();
+    json["disturbance_kinds"] = disturbances_json(scene);
     json["unsafety_ramp"] = unsafety_ramp;
     json["unranked_colour"] = unranked_colour;
     json["shakings"] = shakings_json();

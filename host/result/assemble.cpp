@@ -141,6 +141,12 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.fall_chance[name] = risk.chance;
             if (o < safety.disturbances[d].fragility.size())
                 to.fragility = safety.disturbances[d].fragility[o];
+            if (o < safety.disturbances[d].holds.size())
+                for (Hold hold : safety.disturbances[d].holds[o]) {
+                    hold.place_m = to_input.place(hold.place_m);
+                    hold.force_N = to_input.way(hold.force_N);
+                    to.holds.push_back(std::move(hold));
+                }
         }
         to.seen_enough = from.grounded || from.seen_enough();
         to.rests_by = from.grounded ? "ground" : graph::to_string(from.rest);
@@ -352,9 +358,10 @@ void record_run(const device::Device& device, const ParseOptions& options, doubl
     scene.voxel_size_m = voxel_m;
     scene.density_kg_m3 = options.density_kg_m3;
     scene.friction = options.friction;
+    if (options.people != ParseOptions{}.people) scene.people = options.people;
     scene.events["tolerable_J"] = options.tolerable_J;
-    for (const std::string& name : options.disturbances)
-        scene.events.merge(safety::disturbance_kind(name).events(options));
+    for (const safety::DisturbanceKind* kind : safety::acting_kinds(options))
+        scene.events.merge(kind->events(options));
 }
 
 void assemble_objects(const SolidParts& parts, const ObjectStage& objects,

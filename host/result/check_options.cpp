@@ -6,6 +6,7 @@
 #include "core/number_options.h"
 #include "core/short_number.h"
 #include "safety/disturbances.h"
+#include "safety/people.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -24,6 +25,13 @@ void check(const NumberOption& option, const ParseOptions& options) {
     const std::optional<double> value = option.of(options);
     if (!value || (option.may_be_0 && *value == 0)) return;
     check_range(option.words, *value, option.least, option.most);
+}
+
+void check_once(const std::string& option, const std::vector<std::string>& names) {
+    for (auto name = names.begin(); name != names.end(); ++name)
+        if (std::find(names.begin(), name, *name) != name)
+            throw Error(ErrorKind::usage,
+                        option + ": " + *name + " is given twice; name each once");
 }
 
 }  // namespace
@@ -58,12 +66,20 @@ void check_options(const ParseOptions& o) {
     }
     if (const auto wrong = fault_of(o.corrections))
         throw Error(ErrorKind::usage, "corrections (--corrections): " + *wrong);
-    for (auto name = o.disturbances.begin(); name != o.disturbances.end(); ++name) {
-        safety::disturbance_kind(*name);
-        if (std::find(o.disturbances.begin(), name, *name) != name)
-            throw Error(ErrorKind::usage, "disturbances (--disturbance): " + *name +
-                                              " is given twice; name each once");
-    }
+    for (const std::string& name : o.disturbances) safety::disturbance_kind(name);
+    for (const std::string& name : o.people) safety::person_kind(name);
+    check_once("disturbances (--disturbance)", o.disturbances);
+    check_once("people (--people)", o.people);
+    if (o.people.empty())
+        throw Error(ErrorKind::usage,
+                    "people (--people): none is given; name those in the room, or leave human out "
+                    "of disturbances (--disturbance) where nobody walks");
+    // Of all that there are some may be without who does it.
+    if (o.disturbances != known_disturbances() &&
+        safety::acting_kinds(o).size() < o.disturbances.size())
+        throw Error(ErrorKind::usage,
+                    "disturbances (--disturbance) reach: nobody of people (--people) reaches for "
+                    "things; add children, toddlers or elderly, or leave reach out");
     for (std::size_t n = 0; n < o.motions.size(); ++n) {
         if (!o.motions[n])
             throw Error(ErrorKind::usage, "motion (--motion): number " + std::to_string(n) +
@@ -76,6 +92,12 @@ std::vector<std::string> known_disturbances() {
     std::vector<std::string> names;
     for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
         names.emplace_back(kind->name);
+    return names;
+}
+
+std::vector<std::string> known_people() {
+    std::vector<std::string> names;
+    for (const safety::PersonKind& kind : safety::person_kinds()) names.emplace_back(kind.name);
     return names;
 }
 

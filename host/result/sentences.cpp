@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <string>
 #include <string_view>
 
+#include "core/listed.h"
 #include "core/numbered_object.h"
 #include "core/object_name.h"
 #include "io/length_text.h"
@@ -71,7 +73,26 @@ struct Sentence {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
         }
-        return (object.mode == "slide" ? slides() : tips()) + foot() + otherwise();
+        return (object.mode == "slide" ? slides() : tips()) + held() + foot() + otherwise();
+    }
+
+    // " Children or toddlers who pull at it or climb it upset it."
+    std::string held() const {
+        std::vector<std::string> people, acts;
+        const auto add = [](std::vector<std::string>& to, const std::string& word) {
+            if (std::ranges::find(to, word) == to.end()) to.push_back(word);
+        };
+        for (const Hold& hold : object.holds) {
+            if (!(hold.fall_chance > 0)) continue;
+            add(people, hold.by);
+            add(acts, hold.act == "pull"    ? "pull at it"
+                      : hold.act == "climb" ? "climb it"
+                                            : "lean on it");
+        }
+        if (people.empty()) return "";
+        std::string text = topple::listed(people) + " who " + topple::listed(acts) + " upset it.";
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+        return " " + text;
     }
 
     // Which is more than what was seen of it.
@@ -231,10 +252,13 @@ std::string joules(double value) {
 
 // Against what brings it the most risk, the first of equals; where no wall is within reach, to what
 // it stands on.
+const safety::DisturbanceWords& worst_words(const Object& object) {
+    const safety::DisturbanceKind* worst = safety::largest_risk(object).kind;
+    return (worst != nullptr ? worst : safety::disturbance_kinds().front())->words;
+}
 std::string mend_of(const Object& object, const Fastening& to) {
     if (!to.wall && to.floor) return "Bolt it to the floor, keep people away, or take it out";
-    const safety::DisturbanceKind* worst = safety::largest_risk(object).kind;
-    const auto& words = (worst != nullptr ? worst : safety::disturbance_kinds().front())->words;
+    const safety::DisturbanceWords& words = worst_words(object);
     return to.wall || std::string_view(words.mend).find("the wall") == std::string_view::npos
                ? words.mend
                : "Fasten it to what carries it";
@@ -262,12 +286,12 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
     constexpr double high_m = 0.3;     // of where a fall begins; set by hand
     const bool light = object.mass_kg < light_kg, bolted = !what.fasten.wall && what.fasten.floor;
     if (what.leg_of < 0 && is_carried(object) && object.fall.drop_m >= high_m)
-        return "Put it lower, or farther from the edge: from here it falls " +
+        return std::string(worst_words(object).high_mend) + ": from here it falls " +
                io::length_text(object.fall.drop_m) + ".";
     if ((bolted && !light && is_carried(object)) || is_moved_about(object.name))
         return "Move it to where nobody passes and it stands level, or take it out.";
     std::string text = mend_of(object, what.fasten);
-    if (light) text = what.leg_of < 0 ? "Put it elsewhere, or fasten it" : "Fasten it";
+    if (light) text = what.leg_of < 0 ? worst_words(object).light_mend : "Fasten it";
     if (!(what.hold.force_N > 0)) return text + ".";
     const safety::DisturbanceKind* kind = safety::find_disturbance_kind(what.hold_against);
     const std::string holds = at_least_N(what.hold.force_N) + " N sideways at least" +

@@ -8,12 +8,13 @@
 #include "core/listed.h"
 #include "safety/earthquake/earthquake_field.h"
 #include "safety/human/human_field.h"
+#include "safety/reach/reach_field.h"
 #include "safety/wind/wind_field.h"
 #include "topple/error.h"
 
 namespace topple::safety {
 std::span<const DisturbanceKind* const> disturbance_kinds() {
-    static const std::array kinds{&human_kind(), &wind_kind(), &earthquake_kind()};
+    static const std::array kinds{&human_kind(), &wind_kind(), &earthquake_kind(), &reach_kind()};
     return kinds;
 }
 
@@ -37,6 +38,15 @@ const DisturbanceKind& disturbance_kind(std::string_view name) {
         if (meant) message.append("; for ").append(name).append(" say ").append(kind->name);
     }
     throw Error(ErrorKind::usage, message);
+}
+
+std::vector<const DisturbanceKind*> acting_kinds(const ParseOptions& options) {
+    std::vector<const DisturbanceKind*> out;
+    for (const std::string& name : options.disturbances) {
+        const DisturbanceKind& kind = disturbance_kind(name);
+        if (!kind.acts || kind.acts(options)) out.push_back(&kind);
+    }
+    return out;
 }
 
 }  // namespace topple::safety

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "safety/fields.h"
 #include "topple/parse.h"
@@ -39,6 +40,9 @@ struct DisturbanceWords {
     struct Figure {
         const char *key, *follows, *name, *unit;
     } figure;
+
+    const char* light_mend = "Put it elsewhere, or fasten it";         // for what is carried away
+    const char* high_mend = "Put it lower, or farther from the edge";  // and falls from a height
 };
 
 struct DisturbanceKind {
@@ -50,6 +54,8 @@ struct DisturbanceKind {
     std::map<std::string, double> (*events)(const ParseOptions& options);
     // What to ask where an option is in its range but was meant otherwise, perhaps; "": nothing.
     std::string (*doubt)(const ParseOptions& options) = nullptr;
+    // Whether it is in this run, if it was asked for; null: always.
+    bool (*acts)(const ParseOptions& options) = nullptr;
     bool everyday = false;                      // such events have happened before the scan
     const char* below_ceiling = nullptr;        // what to note where the scan has a ceiling
     const char* left_out_below_none = nullptr;  // and where it has none, and this is left out
@@ -61,5 +67,7 @@ std::span<const DisturbanceKind* const> disturbance_kinds();
 const DisturbanceKind* find_disturbance_kind(std::string_view name);
 // Throws Error(usage) that names those that there are.
 const DisturbanceKind& disturbance_kind(std::string_view name);
+// Of the options' disturbances those that act, in their order.
+std::vector<const DisturbanceKind*> acting_kinds(const ParseOptions& options);
 
 }  // namespace topple::safety

@@ -96,6 +96,7 @@ struct Disturbance {
     Walks walks;                                // of the human field
     std::vector<Push> strongest;                // by object: of all its events
     std::vector<Fragility> fragility;           // by object, of an earthquake
+    std::vector<std::vector<Hold>> holds;       // by object, of who reaches for it
     std::vector<double> gust_m_s;               // of wind from all sides: as tipping_gusts has it
     std::vector<std::string> notes;             // e.g. no walkable floor was found
 

@@ -140,10 +140,10 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     // `all` goes on with what may be a thing.
     const std::span<const safety::RiskObject> at_risk(all.data(), objects.objects.size());
     const safety::Surroundings around = surroundings(parts, objects);
-    for (const std::string& name : options.disturbances) {
-        const safety::DisturbanceKind& kind = safety::disturbance_kind(name);
-        out.disturbances.push_back(
-            stage("field " + name, [&] { return kind.field(device, around, all, options); }));
+    for (const safety::DisturbanceKind* kind : safety::acting_kinds(options)) {
+        out.disturbances.push_back(stage(std::string("field ") + kind->name, [&] {
+            return kind->field(device, around, all, options);
+        }));
     }
     stage("falls", [&] {
         out.landings = landings(parts, objects);

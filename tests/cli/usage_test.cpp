@@ -84,6 +84,9 @@ TEST_F(Usage, refuses_values_before_it_parses) {
             expect_failure(2, {"parse", "plane.xyz", option, value}, {option});
     fails(2, "parse plane.xyz --voxel -1", {"-1"});
     fails(2, "parse plane.xyz --disturbance flood", {"flood", "earthquake"});
+    fails(2, "parse plane.xyz --people pets", {"people (--people) pets", "toddlers"});
+    fails(2, "parse plane.xyz --disturbance human,reach", {"nobody", "toddlers"});
+    fails(2, "parse plane.xyz --people adults,adults", {"adults is given twice"});
     fails(2, "parse plane.xyz --backend cuda", {"backend (--backend) cuda is unknown", "vulkan"});
     // Wrong usage counts before a backend that may be missing.
     fails(2, "parse plane.xyz --backend opencl --voxel 0", {"--voxel"});

@@ -276,7 +276,9 @@ def test_errors_of_options_and_devices(points):
     for option, value, words in (('tile_m', 5, r'^tile_m \(--tile\) 5: only clouds in files'), ('friction', -1, r'^friction \(--friction\) -1: expected'), ('wind_from_deg', 400, r'^wind_from_deg \(--wind-from\) 400: '),
                                  ('max_memory_bytes', 1, r'the 1 B of max_memory_bytes \(--max-memory\): allow that much'),
                                  ('disturbances', ['wind', 'wind'], r'^disturbances \(--disturbance\): wind is given twice; name each once$'),
-                                 ('disturbances', 'flood', r'^disturbances \(--disturbance\) flood: expected human, wind or')):
+                                 ('disturbances', 'flood', r'^disturbances \(--disturbance\) flood: expected human, wind, earthquake or reach'),
+                                 ('people', 'pets', r'^people \(--people\) pets: expected adults, children, toddlers, elderly or wheelchair$'),
+                                 ('people', [], r'^people \(--people\): none is given')):
         with raises('usage' if words[0] == '^' else 'input', words):
             topple.parse(points, **{option: value})
     with raises('usage', r'^backend \(--backend\) abacus is unknown'):

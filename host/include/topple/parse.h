@@ -31,6 +31,8 @@ class TiledResult;
 
 // The names of all disturbances that there are.
 std::vector<std::string> known_disturbances();
+// The names of all kinds of people that there are.
+std::vector<std::string> known_people();
 
 struct ParseOptions {
     // What to compute on, from topple/device.h or topple/embed.h; one parse at a time uses it.
@@ -40,8 +42,11 @@ struct ParseOptions {
     double unit_m = 1;       // metres in the unit of a cloud file's coordinates: 0.001 for mm
     std::optional<Vec3> up;  // up in the input's frame (from an IMU, say); else found
     // Empty: none, so that there are no risks, and no object has an unsafety or a category. What a
-    // push or a blow does is known all the same.
+    // push or a blow does is known all the same. "reach" comes in only where somebody reaches.
     std::vector<std::string> disturbances = known_disturbances();
+    // Who walks there, each kind as often as the others; of children, toddlers and elderly people
+    // some reach for things, pull at them and climb.
+    std::vector<std::string> people{"adults"};
     std::uint64_t seed = 1;
     std::uint64_t max_memory_bytes = 0;  // more is refused, or ends the parse. 0: 3/4 of what is
     // free, and of inputs of megabytes no more than 2 GB for each begun one

@@ -180,6 +180,16 @@ struct Fragility {
     double falls_per_year = none, return_years = none;  // with a hazard curve
 };
 
+// What those of a kind of people do to a thing within their reach, one of all the ways and heights
+// at which they do: one that upsets it, where one does.
+struct Hold {
+    std::string by;   // the kind of people
+    std::string act;  // "pull" | "lean" | "climb"
+    // Per event of "reach", and of those that upset it.
+    double chance = 0, fall_chance = 0;
+    Vec3 place_m{}, force_N{};  // where it acts; of who climbs where their weight does, before it
+};
+
 // What a doubtful object may be in place of what it was taken for, and what that would mean.
 struct Alternative {
     double probability = 0;   // that it is this
@@ -263,6 +273,7 @@ struct Object {
     // One standard error of that risk, by disturbance: of the sampling, and of what is not known of
     // the barrier and the mass.
     std::map<std::string, double> risk_error_J;
+    std::vector<Hold> holds;  // that people take who reach for it, if any were asked for
     // 1 (safest) to 10, by risk, over the scene's objects; NaN: not seen enough to be ranked, or no
     // disturbance was asked for.
     double unsafety = 1;
@@ -364,6 +375,7 @@ struct Scene {
     // What was reckoned with: walks, wind_m_s, pga_m_s2, tolerable_J, as far as they were asked
     // for.
     std::map<std::string, double> events;
+    std::vector<std::string> people;  // ParseOptions::people; empty: adults alone
     std::vector<Primitive> primitives;
     std::vector<Object> objects;
     std::vector<Contact> contacts;

@@ -141,7 +141,14 @@ typedef struct topple_allocator {
     void* user;
 } topple_allocator;
 
-enum { TOPPLE_HUMAN = 1, TOPPLE_WIND = 2, TOPPLE_EARTHQUAKE = 4 };
+enum { TOPPLE_HUMAN = 1, TOPPLE_WIND = 2, TOPPLE_EARTHQUAKE = 4, TOPPLE_REACH = 8 };
+enum {
+    TOPPLE_ADULTS = 1,
+    TOPPLE_CHILDREN = 2,
+    TOPPLE_TODDLERS = 4,
+    TOPPLE_ELDERLY = 8,
+    TOPPLE_WHEELCHAIR = 16
+};
 enum { TOPPLE_LOG_INFO = 0, TOPPLE_LOG_WARNING = 1 };
 
 /* Options of a parse; the command line's --help and topple/parse.h say more of each. NaN means
@@ -193,6 +200,7 @@ typedef struct topple_options {
     /* What things weigh by name or size: "household" or a file (topple/materials.h). NULL: all are
      * of density_kg_m3. */
     const char* materials;
+    uint32_t people; /* TOPPLE_ADULTS | TOPPLE_CHILDREN | ..: who is in the room; adults */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 

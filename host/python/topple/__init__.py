@@ -29,11 +29,11 @@ from ._options import named as _named, option as _option, options as _options_of
 from ._program import generate
 from ._removal import RemovalOrder
 from ._session import LiveScene, Session, Thing
-from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, PossibleThing, Primitive, Support, Why, __version__
+from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Hold, Landscape, Object, Overturning, PossibleThing, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
+__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Hold', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
            'Session', 'Support', 'Thing', 'Unheld', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()
@@ -341,7 +341,7 @@ def _components(accelerogram):
 
 
 @_named
-def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
+def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None, people='adults',
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, motion_unit=None,
           motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, stability_level=0.0, grouping_time_s=None, materials=None, corrections=None, cache_file=None, normals=None,
           name=None, viewpoint=None, colours=None, frames=None, camera_to_world=None, intrinsics=None, colour_intrinsics=None,
@@ -363,8 +363,9 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     a topple.stages.Intrinsics. colours: (F, H, W, 3) uint8 sRGB, or a list with None where there is none, seen from the same places;
     colour_intrinsics: of these, where they are not those of depth.
 
-    disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names; or None for
-    all that there are.
+    disturbances: a list of "human", "wind", "earthquake", "reach", which may be empty; or one of these names; or None for
+    all that there are. people: who is in the room, "adults", "children", "toddlers", "elderly" or "wheelchair", or a list of
+    these; "reach" is what some of them do who reach for things, and comes in only with them.
 
     device: a Device of open_device(), or a backend's name. motion: a file, or a list of files; where these do not tell it, motion_unit is
     how many metres their unit has, motion_rate how many frames a second, and motion_up what is up in them, three numbers. accelerogram: a
@@ -387,7 +388,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
     are those of `topple parse --help-all`.
     """
-    given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
+    given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'people': people, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
              'density_kg_m3': density_kg_m3, 'friction': friction, 'contents_kg_m3': contents_kg_m3, 'walks': walks,
              'wind_m_s': wind_m_s, 'wind_from_deg': wind_from_deg, 'pga_m_s2': pga_m_s2,
              'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'stability_level': stability_level, 'grouping_time_s': grouping_time_s, 'tile_m': tile_m}

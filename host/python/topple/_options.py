@@ -75,6 +75,7 @@ _KINDS = {
     '"g", "m/s2", "cm/s2", or None': (_text, ('accelerogram_unit',)),
     'True or False': (_flag, ('isolate', 'visuals')),
     'a name, a list of names, or None': (_names, ('disturbances',)),
+    'a name, or a list of names': (_names, ('people',)),
     "a Device of topple.open_device(), a backend's name, or None": (_device, ('device',)),
     'a function, or None': (_callable, ('progress', 'cancelled')),
 }

@@ -63,6 +63,7 @@ _TEXTS = {
     'AppliedCorrection': lambda c: f' {c.do}{_corrected(c)}: {c.outcome}',
     'Overturning': lambda o: ': does not tip' if math.isnan(o.tilt_deg) else f': tips at {figure(o.tilt_deg)} deg, or {figure(o.hand_push_N)} N at a hand\'s height',
     'Fragility': lambda f: f': half of earthquakes of {figure(f.pga_g, 2)} g upset it' if math.isfinite(f.pga_g) else ': no median',
+    'Hold': lambda h: f': {h.by} {h.act} it, {"and it falls" if h.fall_chance > 0 else "it stays"}',
     'Alternative': lambda a: f': {"two things" if a.whole < 0 else f"one thing with object {a.whole}"}, {a.probability:.2f} probable, {figure(a.barrier_J)} J',
     'PossibleThing': lambda t: f': {t.probability:.2f} probable, {figure(t.mass_kg)} kg, {figure(t.barrier_J)} J',
     'DirectedBarrier': lambda b: f': {_directions(b)}',

@@ -229,11 +229,19 @@ function todoInShort(object) {
   return sentence ? `${sentence.split(/, with |[:;(]|\. |\.$/)[0].trim()}.` : 'Fasten it if it must not fall.';
 }
 
+// Who gets hold of it from the floor, and what upsets it then; '' where nobody does who was asked for.
+function reachText(object) {
+  const all = object.holds || [], unique = values => [...new Set(values)];
+  if (!all.length) return '';
+  const acts = {pull: 'pulled at', lean: 'leaned on', climb: 'climbed'}, falls = unique(all.filter(hold => hold.fall_chance > 0).map(hold => acts[hold.act]));
+  return `Within reach of ${listed(unique(all.map(hold => hold.by)))}${falls.length ? `: it falls when ${falls.join(' or ')}` : ', who do not upset it'}`;
+}
+
 // All that there is to know of it in words, for its card and its panel.
 function tellings(scene, object) {
   const doubtful = isDoubtful(object), unseen = object.seen_enough === false, known = !unseen && !isNearly(object);
   return [[isAdvised(object) || unseen ? 'advice' : '', unseen ? 'Go and look what holds it.' : object.advice.action], ['', [object.name ? `object ${object.id}` : '', shortMass(scene, object), sizeText(object)].filter(text => text).join(', ')],
-    ['', placeText(scene, object)], ['', known ? largestRiskText(object) : ''], ['', upsetText(scene, object)], ['', known ? yearsText(scene, object) : ''],
+    ['', placeText(scene, object)], ['', reachText(object)], ['', known ? largestRiskText(object) : ''], ['', upsetText(scene, object)], ['', known ? yearsText(scene, object) : ''],
     ['', doubtful ? doubtText(object) : ''], ['', unseen ? '' : stoodText(object)], ['', fallKnown(object) ? happensText(scene, object) : ''], ['clear', keepClearText(scene, object)],
     ['', overturningText(object)], ['', howSureText(scene, object)]]
     .flatMap(([className, text]) => paragraph(`why ${className}`, text && text.replace(/([^.?])$/, '$1.')));

@@ -58,8 +58,8 @@ OrderedJson landscape() {
 int main() {
     const auto all = OrderedJson::array(
         {listed<Primitive>(), listed<Overturning>(), listed<DirectedBarrier>(), listed<Why>(),
-         listed<Advice>(), listed<Alternative>(), listed<PossibleThing>(), listed<Fragility>(),
-         landscape(), listed<Fall>(), listed<AppliedCorrection>(), listed<Object>(),
-         listed<Contact>(), listed<Support>(), listed<Scene>()});
+         listed<Advice>(), listed<Alternative>(), listed<Hold>(), listed<PossibleThing>(),
+         listed<Fragility>(), landscape(), listed<Fall>(), listed<AppliedCorrection>(),
+         listed<Object>(), listed<Contact>(), listed<Support>(), listed<Scene>()});
     std::puts(all.dump(1).c_str());
 }

@@ -5,6 +5,7 @@
 
 #include "safety/disturbances.h"
 #include "safety/fields.h"
+#include "safety/human/body_parts.h"
 #include "topple/motion.h"
 
 namespace topple::safety {
@@ -21,9 +22,9 @@ struct HumanOptions {
     double walking_speed_m_s = 1.3;
     double wander_m = 0.20;    // how far walkers stray sideways from their path, at most
     double restitution = 0.5;  // of a body's part that strikes a thing
-    // How the bodies of walkers move, each as often as the others; none: as in the table of
-    // body_parts.h.
+    // How the bodies of walkers move, each as often as the others; none: as in the table of parts.
     std::vector<std::shared_ptr<const BodyMotion>> motions;
+    std::span<const BodyPart> parts = body_parts;
 };
 
 inline constexpr unsigned max_shown_paths = 100;  // walks whose way the report draws
@@ -37,6 +38,9 @@ inline constexpr unsigned max_shown_paths = 100;  // walks whose way the report 
 // stays in their way.
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,
                         std::span<const RiskObject> objects, const HumanOptions& options);
+// Of several kinds of people, each of whom walks as often as the others.
+Disturbance people_field(device::Device& device, const Surroundings& surroundings,
+                         std::span<const RiskObject> objects, std::span<const HumanOptions> kinds);
 
 const DisturbanceKind& human_kind();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "safety/human/human_field.h"
+#include "safety/people.h"
 
 namespace topple::safety {
 
@@ -27,11 +28,10 @@ const DisturbanceKind& human_kind() {
         .field =
             [](device::Device& device, const Surroundings& surroundings,
                std::span<const RiskObject> objects, const ParseOptions& options) {
-                HumanOptions human;
-                human.seed = options.seed;
-                human.paths = options.walks;
-                human.motions = options.motions;
-                return human_field(device, surroundings, objects, human);
+                std::vector<HumanOptions> kinds;
+                for (const std::string& name : options.people)
+                    kinds.push_back(walker(person_kind(name), options));
+                return people_field(device, surroundings, objects, kinds);
             },
         .events =
             [](const ParseOptions& options) {

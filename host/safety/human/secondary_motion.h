@@ -45,7 +45,7 @@ struct SecondaryMotion {
     std::vector<std::string> notes;
 };
 
-// From the table of body parts (body_parts.h): a level for each part. A part that reaches l to the
+// From the table of the options' parts: a level for each part. A part that reaches l to the
 // side passes everything up to l, and with a chance that falls linearly to 0 what lies up to
 // wander_m further out, since walkers stray from their path. One walk past a place is `share`
 // passes.

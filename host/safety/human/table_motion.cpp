@@ -52,7 +52,7 @@ void add_part(SecondaryMotion& motion, const BodyPart& part, const HumanOptions&
 
 SecondaryMotion table_motion(const HumanOptions& options) {
     SecondaryMotion out;
-    for (const BodyPart& part : body_parts) add_part(out, part, options);
+    for (const BodyPart& part : options.parts) add_part(out, part, options);
     return out;
 }
 

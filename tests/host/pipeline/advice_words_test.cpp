@@ -27,7 +27,7 @@ struct Situation {
     std::vector<const char*> says, never;
 };
 
-std::string action_of(const Situation& s) {
+std::string action_of(const Situation& s, const char* worst = "human") {
     Scene scene;
     scene.events["tolerable_J"] = 0.1;
     Object& o = scene.objects.emplace_back();
@@ -39,8 +39,8 @@ std::string action_of(const Situation& s) {
     o.barrier_error_J = 1;
     o.release_J = 9.8 * s.mass_kg * std::max(s.drop_m, s.size_m[2] / 2);
     o.instability = {{5, o.release_J}};
-    o.risk_J = {{"human", 0.02 * o.release_J}, {"earthquake", 0.01 * o.release_J}};
-    o.fall_chance = {{"human", 0.02}, {"earthquake", 0.01}};
+    o.risk_J = {{worst, 0.02 * o.release_J}, {"earthquake", 0.01 * o.release_J}};
+    o.fall_chance = {{worst, 0.02}, {"earthquake", 0.01}};
     o.fall.falls = true;
     o.fall.drop_m = s.drop_m;
     Suggestion what;
@@ -49,7 +49,7 @@ std::string action_of(const Situation& s) {
     if (s.kind == Kind::move) what.move_m = {0.3, 0, 0};
     if (s.kind == Kind::fix) {
         what.hold = {120, s.size_m[2]};
-        what.hold_against = "human";
+        what.hold_against = worst;
     }
     write_advice({&what, 1}, scene);
     return o.advice.action;
@@ -465,6 +465,23 @@ TEST(AdviceWords, OfFortySituations) {
         for (const char* words : s.says) EXPECT_THAT(said, HasSubstr(words));
         for (const char* words : s.never) EXPECT_THAT(said, testing::Not(HasSubstr(words)));
     }
+}
+
+// Lower is nearer to a child.
+TEST(AdviceWords, WhatIsReachedForGoesOutOfReach) {
+    Situation mug{"a mug in reach",
+                  "",
+                  0.4,
+                  mug_m,
+                  "low",
+                  Kind::fix,
+                  on_furniture,
+                  0.9,
+                  {"Put it out of reach", "0.90 m"},
+                  {bolt, strap, lower}};
+    for (const char* words : mug.says) EXPECT_THAT(action_of(mug, "reach"), HasSubstr(words));
+    for (const char* words : mug.never)
+        EXPECT_THAT(action_of(mug, "reach"), testing::Not(HasSubstr(words)));
 }
 
 }  // namespace
