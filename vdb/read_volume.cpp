@@ -51,15 +51,29 @@ void check_size(const std::filesystem::path& file, const openvdb::GridBase& grid
     }
 }
 
-Candidates read_grids(const std::filesystem::path& path) {
+// What use(file) does with a file that was checked as far as OpenVDB takes it on trust.
+template <class Use>
+void with_file(const std::filesystem::path& path, const Use& use) {
     {
         const io::MappedFile bytes(path);
         io::check_volume(path, bytes.text());
     }
-    Candidates found;
     try {
         openvdb::io::File file(path.string());
         file.open(false);
+        use(file);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        fail(path, std::string("can't be read as OpenVDB: ") + error.what());
+    }
+}
+
+Candidates read_grids(const std::filesystem::path& path) {
+    Candidates found;
+    with_file(path, [&](openvdb::io::File& file) {
         for (auto name = file.beginName(); name != file.endName(); ++name) {
             const openvdb::GridBase::Ptr about = file.readGridMetadata(name.gridName());
             const bool number = about->isType<openvdb::FloatGrid>();
@@ -77,13 +91,7 @@ Candidates read_grids(const std::filesystem::path& path) {
             }
             if (!found.fog) found.fog = floats;
         }
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {
-        fail(path, std::string("can't be read as OpenVDB: ") + error.what());
-    }
+    });
     return found;
 }
 
@@ -267,6 +275,56 @@ ScannedMap read_volume(const std::filesystem::path& file, double unit_m) {
         return extraction.finish();
     }
     fail(file, "has no grid of floats (distances or density) or of 32-bit integers (labels)");
+}
+
+ScannedMap read_states(const std::filesystem::path& file, double unit_m) {
+    openvdb::initialize();
+    const char* const name = "state";
+    openvdb::Int32Grid::Ptr states;
+    with_file(file, [&](openvdb::io::File& from) {
+        if (!from.hasGrid(name) || !from.readGridMetadata(name)->isType<openvdb::Int32Grid>())
+            return;
+        states = openvdb::gridPtrCast<openvdb::Int32Grid>(from.readGrid(name));
+        check_size(file, *states);
+    });
+    const auto size = states ? states->getMetadata<openvdb::DoubleMetadata>("voxel_size_m")
+                             : openvdb::DoubleMetadata::Ptr();
+    if (!size || !(size->value() > 0) || !states->transform().isLinear())
+        fail(file, "is no volume of topple: it has no grid \"state\" with voxel_size_m");
+    ScannedMap out;
+    out.cloud.source = file.string();
+    out.space.voxel_m = size->value() * unit_m;
+    constexpr std::int32_t empty = 0;
+    const auto add_free = [&](const openvdb::CoordBBox& box) {
+        if (out.space.free.size() >= most_voxels) fail(file, "has too many voxels");
+        out.space.free.push_back({{box.min()[0], box.min()[1], box.min()[2]},
+                                  {box.max()[0], box.max()[1], box.max()[2]}});
+    };
+    // What is stored as one value; then voxels, in runs along z.
+    for (auto value = states->tree().cbeginValueAll(); value; ++value) {
+        if (value.isVoxelValue() || *value != empty) continue;
+        add_free(value.getBoundingBox());
+    }
+    for (auto leaf = states->tree().cbeginLeaf(); leaf; ++leaf) {
+        constexpr openvdb::Index32 row = 8, all = 512;
+        for (openvdb::Index32 first = 0; first < all; first += row) {
+            for (openvdb::Index32 n = first, next; n < first + row; n = next) {
+                next = n + 1;
+                if (leaf->getValue(n) != empty) continue;
+                while (next < first + row && leaf->getValue(next) == empty) ++next;
+                const Coord low = leaf->offsetToGlobalCoord(n);
+                add_free({low, low.offsetBy(0, 0, static_cast<int>(next - n) - 1)});
+            }
+        }
+        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
+            const Vec3d at = states->transform().indexToWorld(voxel.getCoord()) * unit_m;
+            out.cloud.x.push_back(static_cast<float>(at[0]));
+            out.cloud.y.push_back(static_cast<float>(at[1]));
+            out.cloud.z.push_back(static_cast<float>(at[2]));
+        }
+    }
+    if (out.cloud.x.empty()) fail(file, "has no solid voxel");
+    return out;
 }
 
 }  // namespace topple::vdb

@@ -23,6 +23,10 @@ namespace topple::vdb {
 // Throws Error(input) where the file is no OpenVDB, is damaged, or shows no surface.
 ScannedMap read_volume(const std::filesystem::path& file, double unit_m = 1);
 
+// What VoxelScene::write() has written: a point at the centre of each solid voxel, and what was
+// seen to be free, in voxels of the grid, not of the world. Throws Error(input) where it is none.
+ScannedMap read_states(const std::filesystem::path& file, double unit_m = 1);
+
 inline constexpr float fog_threshold = 0.5f;
 
 bool looks_like_volume(const std::filesystem::path& path);

@@ -50,6 +50,7 @@ Command add_export(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_view(CLI::App& app);
 Command add_live(CLI::App& app);
+Command add_compare(CLI::App& app);
 Command add_perf(CLI::App& app);
 // Those of topple-lab, which then runs in this program's place, so that signals and exit codes are
 // its own.

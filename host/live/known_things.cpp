@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/alike.h"
 #include "core/vectors.h"
 
 namespace topple::live {
@@ -19,8 +20,8 @@ constexpr double least_shared = 0.1;
 constexpr double most_of_it = 0.5, some_of_it = 0.1;
 // Centres are found to so much.
 constexpr double aside_m = 0.05;
-// How much the size, along each axis from the shortest, and the weight of what moved may differ.
-constexpr double alike_size = 0.15, alike_m = 0.02, alike_mass = 0.3;
+// How much the weight of what moved may differ.
+constexpr double alike_mass = 0.3;
 
 struct Match {
     double alike;  // the more the better
@@ -82,15 +83,6 @@ std::vector<double> shares(std::size_t objects, const Showed& showed, const Show
     return some;
 }
 
-bool alike(const Vec3& size, const Vec3& other) {
-    Vec3 a = size, b = other;
-    std::ranges::sort(a);
-    std::ranges::sort(b);
-    for (std::size_t n = 0; n < 3; ++n)
-        if (std::abs(a[n] - b[n]) > alike_m + alike_size * std::max(a[n], b[n])) return false;
-    return true;
-}
-
 }  // namespace
 
 std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& shown) {
@@ -117,7 +109,7 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
     };
     const auto like = [&](std::size_t b, std::size_t n) {
         const Object& object = scene.objects[n];
-        return alike(object.size_m, before_[b].size_m) &&
+        return alike_sizes(object.size_m, before_[b].size_m) &&
                std::abs(object.mass_kg - before_[b].mass_kg) <=
                    alike_mass * std::max(object.mass_kg, before_[b].mass_kg);
     };

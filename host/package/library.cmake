@@ -1,6 +1,6 @@
 # libtopple: what host/include/topple declares and all that it takes, as one library from the objects of
 # the folders' own. Its users see topple::topple, installed or by add_subdirectory (docs/architecture.md).
-set(PARTS topple_api topple_base topple_child topple_core topple_device topple_export topple_fitted topple_formats topple_geometry topple_graph
+set(PARTS topple_api topple_base topple_child topple_compare topple_core topple_device topple_export topple_fitted topple_formats topple_geometry topple_graph
           topple_io topple_kernels topple_live topple_objects topple_physics topple_pipeline topple_points topple_reader topple_report topple_result
           topple_safety topple_scale topple_solids topple_vdb)
 get_target_property(NATIVE topple_kernels TOPPLE_NATIVE)

@@ -98,6 +98,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_parse(module);
     bind_places(module);
     bind_ask(module);
+    bind_compare(module);
     bind_labels(module);
     bind_export(module);
     bind_kernels(module);

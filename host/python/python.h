@@ -43,6 +43,7 @@ struct Parsed {
 };
 
 void bind_ask(py::module_& module);
+void bind_compare(py::module_& module);
 void bind_export(py::module_& module);
 void bind_kernels(py::module_& module);
 void bind_labels(py::module_& module);

@@ -1,35 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "topple/session.h"
 
-#include <atomic>
-#include <chrono>
-
 #include "arrays.h"
 #include "busy.h"
+#include "stopped.h"
 
 // Scans that are still being made. Tuples, which topple/_session.py names.
 namespace topple::python {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Whether the interpreter ends, or a signal such as Ctrl-C came: then Python's error is set.
-class Stopped {
-  public:
-    bool operator()() const {
-        if (Busy::must_stop()) return true;
-        const auto now = Clock::now().time_since_epoch().count();
-        auto asked = asked_->load();
-        constexpr Clock::duration pause = std::chrono::milliseconds(50);
-        if (now - asked < pause.count() || !asked_->compare_exchange_strong(asked, now))
-            return false;
-        const py::gil_scoped_acquire acquire;
-        return PyErr_CheckSignals() != 0;
-    }
-
-  private:
-    std::shared_ptr<std::atomic<Clock::rep>> asked_ = std::make_shared<std::atomic<Clock::rep>>(0);
-};
 
 class PySession {
   public:
@@ -62,14 +40,7 @@ class PySession {
         return py::make_tuple(found.height, found.width, owned(std::move(found.thing)));
     }
     py::object update() {
-        std::shared_ptr<const LiveScene> found;
-        try {
-            found = unlocked([&] { return session_->update(); });
-        } catch (const Error&) {
-            if (PyErr_Occurred()) throw py::error_already_set();
-            throw;
-        }
-        return described(*found);
+        return described(*stoppable([&] { return session_->update(); }));
     }
     py::object scene() const {
         const auto found = session_->scene();

@@ -5,6 +5,9 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
+#include <array>
+#include <set>
+
 #include "device/devices.h"
 #include "host/io/files.h"
 #include "vdb/boxes.h"
@@ -345,6 +348,33 @@ TEST_F(WriteVdb, SaysWhatCannotBeWritten) {
     VoxelScene scene({}, {}, {});
     for (const auto& path : {folder_ / "absent" / "volume.vdb", std::filesystem::path("/dev/full")})
         test::expect_input_error([&] { scene.write(path); }, {path.native()});
+}
+
+TEST_F(ReadVolume, states_of_our_own_come_back) {
+    VoxelScene scene(VoxelFrame{.voxel_m = 0.05});
+    std::vector<std::uint8_t> states(512, static_cast<std::uint8_t>(State::invisible));
+    const auto at = [](std::size_t x, std::size_t y, std::size_t z) { return x * 64 + y * 8 + z; };
+    for (const std::size_t z : {0, 1, 2, 5}) states[at(1, 2, z)] = 0;
+    states[at(1, 2, 3)] = static_cast<std::uint8_t>(State::surface);
+    scene.put_leaf({8, 0, -8}, states);
+    scene.put_label(9, 2, -5, 0);
+    scene.put_leaf({16, 0, 0}, std::vector<std::uint8_t>(512, 0));
+    scene.write(path("own.vdb"));
+    const ScannedMap map = read_states(path("own.vdb"));
+    EXPECT_NEAR(map.space.voxel_m, 0.05, 1e-12);
+    ASSERT_EQ(map.cloud.x.size(), 1u);
+    EXPECT_NEAR(map.cloud.x[0], 9.5 * 0.05, 1e-6);
+    EXPECT_NEAR(map.cloud.z[0], -4.5 * 0.05, 1e-6);
+    std::set<std::array<std::int32_t, 3>> free;
+    for (const SpaceMap::Box& box : map.space.free)
+        for (std::int32_t i = box.low[0]; i <= box.high[0]; ++i)
+            for (std::int32_t j = box.low[1]; j <= box.high[1]; ++j)
+                for (std::int32_t k = box.low[2]; k <= box.high[2]; ++k)
+                    EXPECT_TRUE(free.insert({i, j, k}).second);
+    EXPECT_EQ(free.size(), 512u + 4);
+    EXPECT_TRUE(free.contains({9, 2, -3}) && free.contains({9, 2, -8}) &&
+                free.contains({23, 7, 7}));
+    expect_input_error([&] { read_states(save(sphere(5, 3))); }, {"a.vdb", "no volume of topple"});
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
         {"view", "Show what a parse has found in the browser", add_view},
         {"live", "Follow a scan that is still being made: what is there, came and has gone",
          add_live},
+        {"compare", "Say what came, went and moved between two parses of one room", add_compare},
         {"devices", "List every device of every backend, or why one is missing", add_devices},
         {"generate", generate_purpose, lab},
         {"evaluate", evaluate_purpose, lab},

@@ -50,6 +50,38 @@ ScannedMap named_as_here(const child::Answer& answer, const std::filesystem::pat
     }
 }
 
+// What a reader of its own makes of the file; task: what it is to do.
+ScannedMap read_by(const char* name, const char* task, const std::filesystem::path& file,
+                   double unit_m, const std::function<void()>& poll) {
+    const std::filesystem::path program = child::find_program(name);
+    if (program.empty()) {
+        throw Error(ErrorKind::usage,
+                    io::path_text(file) + ": such files are read by the program " + name +
+                        ", in a process of its own, which was not found beside this one; name its "
+                        "folder in the environment variable TOPPLE_READERS, or, for a file that "
+                        "you trust, say isolate = false (--no-isolate)");
+    }
+    const child::Limits limits = limits_of(file);
+    const std::filesystem::path there = std::filesystem::absolute(file);
+    const child::Ended ended =
+        child::run(program.string(), {task, unit_text(unit_m), there.string()}, limits, poll);
+    if (!ended.started)
+        throw Error(ErrorKind::input, io::path_text(file) + ": is read by another program, and " +
+                                          ended.how +
+                                          "; or, for a file that you trust, say "
+                                          "isolate = false (--no-isolate)");
+    try {
+        if (ended.answer.whole()) return named_as_here(ended.answer, there, file);
+    } catch (const child::BadAnswer&) {
+    }
+    io::fail(file, "can't be read: its reader " +
+                       (ended.answer.whole() ? "gave an answer that makes no sense" : ended.how) +
+                       " within its limits of " + io::bytes_text(limits.memory_bytes) + " and " +
+                       std::to_string(limits.cpu_s) +
+                       " s; the file is damaged, or of another kind than its name says: write it "
+                       "anew, or, if you trust it, say isolate = false (--no-isolate)");
+}
+
 }  // namespace
 
 bool takes_others(const std::filesystem::path& file) {
@@ -68,35 +100,15 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
     // What is no file is told by the reader here.
     if (std::filesystem::is_directory(file, error) || !takes_others(file))
         return read_scan(file, unit_m, poll);
-    const char* const name =
-        vdb::looks_like_volume(file) ? child::volume_program : child::reader_program;
-    const std::filesystem::path program = child::find_program(name);
-    if (program.empty()) {
-        throw Error(ErrorKind::usage,
-                    io::path_text(file) + ": such files are read by the program " + name +
-                        ", in a process of its own, which was not found beside this one; name its "
-                        "folder in the environment variable TOPPLE_READERS, or, for a file that "
-                        "you trust, say isolate = false (--no-isolate)");
-    }
-    const child::Limits limits = limits_of(file);
-    const std::filesystem::path there = std::filesystem::absolute(file);
-    const child::Ended ended =
-        child::run(program.string(), {"scan", unit_text(unit_m), there.string()}, limits, poll);
-    if (!ended.started)
-        throw Error(ErrorKind::input, io::path_text(file) + ": is read by another program, and " +
-                                          ended.how +
-                                          "; or, for a file that you trust, say "
-                                          "isolate = false (--no-isolate)");
-    try {
-        if (ended.answer.whole()) return named_as_here(ended.answer, there, file);
-    } catch (const child::BadAnswer&) {
-    }
-    io::fail(file, "can't be read: its reader " +
-                       (ended.answer.whole() ? "gave an answer that makes no sense" : ended.how) +
-                       " within its limits of " + io::bytes_text(limits.memory_bytes) + " and " +
-                       std::to_string(limits.cpu_s) +
-                       " s; the file is damaged, or of another kind than its name says: write it "
-                       "anew, or, if you trust it, say isolate = false (--no-isolate)");
+    return read_by(vdb::looks_like_volume(file) ? child::volume_program : child::reader_program,
+                   "scan", file, unit_m, poll);
+}
+
+ScannedMap read_volume_apart(const std::filesystem::path& file, const std::function<void()>& poll) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        io::fail(file, "is missing, or no file; parse the scan again");
+    return read_by(child::volume_program, "states", file, 1, poll);
 }
 
 }  // namespace topple::reader

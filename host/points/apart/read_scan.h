@@ -29,4 +29,7 @@ ScannedMap read_points(const std::filesystem::path& file, double unit_m,
 ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
                            const std::function<void()>& poll);
 
+// What topple itself has written as volume.vdb (vdb::read_states()), read in such a process.
+ScannedMap read_volume_apart(const std::filesystem::path& file, const std::function<void()>& poll);
+
 }  // namespace topple::reader

@@ -23,6 +23,7 @@ import numpy as np
 from . import _ask, _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, kernels, plot, stages
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._ask import FallsWithout, Holder, Unheld
+from ._compare import Alignment, ComparedThing, Comparison, compare
 from ._device import open_device
 from ._frames import Frames as _Frames
 from ._options import named as _named, option as _option, options as _options_of
@@ -33,8 +34,8 @@ from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, Di
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'Alternative', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Hold', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
-           'Session', 'Support', 'Thing', 'Unheld', 'Why', '__version__', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
+__all__ = ['Advice', 'Alignment', 'Alternative', 'AppliedCorrection', 'ComparedThing', 'Comparison', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Hold', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
+           'Session', 'Support', 'Thing', 'Unheld', 'Why', '__version__', 'compare', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()
 for _kind in _snapshot.ITEMS:  # of a live result: a plain item that stands alone comes back

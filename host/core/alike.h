@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "topple/input.h"
+
+namespace topple {
+
+// Whether two boxes, each turned as it may be, are of one thing that was scanned twice.
+inline bool alike_sizes(Vec3 a, Vec3 b) {
+    constexpr double share = 0.15, at_least_m = 0.02;  // by which sides differ, the shortest first
+    std::ranges::sort(a);
+    std::ranges::sort(b);
+    for (std::size_t n = 0; n < 3; ++n)
+        if (std::abs(a[n] - b[n]) > at_least_m + share * std::max(a[n], b[n])) return false;
+    return true;
+}
+
+}  // namespace topple
