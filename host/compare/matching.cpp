@@ -25,6 +25,8 @@ constexpr double least_shared = 0.25;
 constexpr double mostly = 0.6, some = 0.1;
 // Of its surface, that whose place the other must have seen.
 constexpr double least_seen = 0.3;
+// Of that, what must be away from other things to be judged by alone.
+constexpr double least_clear = 0.2;
 constexpr double aside_m = 0.05;
 // Solid volumes of one thing differ by less than this factor, as undersides are completed or not;
 // its mean colours by less than this distance in sRGB, of 255, as lamps differ.
@@ -33,10 +35,17 @@ constexpr double alike_volume = 2.5, alike_colour = 60;
 // What the other result shows at the places of an object's seen surface.
 struct Places {
     double all = 0, free = 0, solid = 0;
-    std::map<std::int32_t, double> of;  // by object there
+    double clear_free = 0, clear_solid = 0;  // of those away from other things
+    std::map<std::int32_t, double> of;       // by object there
     double seen() const { return free + solid; }
     bool known() const { return all > 0 && seen() >= least_seen * all; }
-    double free_share() const { return seen() > 0 ? free / seen() : 0; }
+    // Near other things, which stay, a place is solid whatever became of this one: those count only
+    // where there are hardly any others.
+    double free_share() const {
+        const double clear = clear_free + clear_solid;
+        if (clear >= least_clear * seen() && clear > 0) return clear_free / clear;
+        return seen() > 0 ? free / seen() : 0;
+    }
 };
 
 Mat4 inverse(const Mat4& m) {
@@ -53,12 +62,19 @@ std::vector<Places> places_of(const Side& side, const Side& other, const Mat4& t
     for (std::size_t n = 0; n < solid.x.size(); ++n) {
         if (solid.object[n] < 0 || solid.state[n] != 0) continue;
         Places& places = out[static_cast<std::size_t>(solid.object[n])];
-        const Vec3 there = transformed(to, {solid.x[n], solid.y[n], solid.z[n]});
+        const Vec3 here{solid.x[n], solid.y[n], solid.z[n]};
         const std::int32_t is =
-            other.space.at(transformed(other.scene.manhattan_from_input, there));
+            other.space.at(transformed(other.scene.manhattan_from_input, transformed(to, here)));
+        const bool is_free = is == SeenSpace::free, is_solid = is >= SeenSpace::of_none;
         ++places.all;
-        places.free += is == SeenSpace::free;
-        places.solid += is >= SeenSpace::of_none;
+        places.free += is_free;
+        places.solid += is_solid;
+        if ((is_free || is_solid) &&
+            !side.space.near_others(transformed(side.scene.manhattan_from_input, here),
+                                    solid.object[n])) {
+            places.clear_free += is_free;
+            places.clear_solid += is_solid;
+        }
         if (is >= 0) ++places.of[is];
     }
     return out;

@@ -89,14 +89,27 @@ std::int32_t SeenSpace::cell(const Cell& at) const {
     return cells_[static_cast<std::size_t>((n[0] * size_[1] + n[1]) * size_[2] + n[2])];
 }
 
+SeenSpace::Cell SeenSpace::cell_at(const Vec3& place_m) const {
+    Cell out{};
+    for (std::size_t a = 0; a < 3; ++a) out[a] = cell_of(place_m[a], voxel_m_);
+    return out;
+}
+
 std::int32_t SeenSpace::at(const Vec3& place_m) const {
-    Cell here{};
-    for (std::size_t a = 0; a < 3; ++a) here[a] = cell_of(place_m[a], voxel_m_);
+    const Cell here = cell_at(place_m);
     for (const Cell& step : around_) {
         const std::int32_t there = cell({here[0] + step[0], here[1] + step[1], here[2] + step[2]});
         if (there >= of_none) return there;
     }
     return cell(here);
+}
+
+bool SeenSpace::near_others(const Vec3& place_m, std::int32_t object) const {
+    const Cell here = cell_at(place_m);
+    return std::ranges::any_of(around_, [&](const Cell& step) {
+        const std::int32_t there = cell({here[0] + step[0], here[1] + step[1], here[2] + step[2]});
+        return there >= of_none && there != object;
+    });
 }
 
 }  // namespace topple::comparing

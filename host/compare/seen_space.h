@@ -24,10 +24,12 @@ class SeenSpace {
     // The object whose solid is at a place, or nearest to it within the reach; of_none: solid of no
     // object. Else whether the place was seen to be free.
     std::int32_t at(const Vec3& place_m) const;
-    double reach_m() const { return reach_m_; }
+    // Whether something solid that is not of this object is within the reach of a place.
+    bool near_others(const Vec3& place_m, std::int32_t object) const;
 
   private:
     using Cell = std::array<std::int64_t, 3>;
+    Cell cell_at(const Vec3& place_m) const;
     std::int32_t cell(const Cell& at) const;
 
     double voxel_m_, reach_m_;
