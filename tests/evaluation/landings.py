@@ -34,11 +34,11 @@ TIMES = (1.05, 1.4, 2, 3, 4.5, 7, 10, 15, 25, 40)  # what the table says
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 
-def made(topple, kind, seed, folder):
-    """The folders of a room's output and export."""
+def made(topple, kind, seed, folder, *options):
+    """The folders of a room's output and export; options: of the parse."""
     out, mjcf = (os.path.join(folder, name) for name in ('out', 'mjcf'))
     if not os.path.exists(os.path.join(mjcf, 'bodies.json')):
-        run(topple, 'parse', generate(topple, kind, seed, folder), '-o', out)
+        run(topple, 'parse', generate(topple, kind, seed, folder), '-o', out, *options)
         run(topple, 'export', out, '--mjcf', mjcf)
     return out, mjcf
 

@@ -1,64 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "core/random.h"
 #include "device/devices.h"
-#include "host/pipeline/assessed_room.h"
 #include "physics/directions.h"
 #include "safety/earthquake/made_up_records.h"
 #include "safety/earthquake/rocking.h"
 #include "simulators/script.h"
+#include "simulators/struck_thing.h"
 
 // The least energy of a blow that makes a thing fall, by direction and height: the table of a parse
 // against blows in MuJoCo (blows_check.py).
 namespace topple::exports::test {
 namespace {
-
-constexpr double blow_voxel_m = 0.0125, blow_friction = 0.3;
-
-using BlowBox = std::array<double, 6>;  // x0, x1, y0, y1, z0, z1
-
-// Boxes, thin boards, L shapes, lamps and steps in turn, every other one near a table's edge.
-struct StruckThing {
-    std::vector<BlowBox> parts, fixed;
-
-    StruckThing(Random& random, int number) {
-        const auto some = [&](double low, double high) {
-            return blow_voxel_m * std::round(random.uniform(low, high) / blow_voxel_m);
-        };
-        const bool table = number % 2 == 1;
-        const double top = table ? 0.5 : 0;
-        fixed.push_back({-1, 1, -1, 1, -0.0125, 0});
-        if (table) fixed.push_back({-0.4, 0.4, -0.3, 0.3, 0.4, top});
-        const double x = table ? some(-0.38, 0.1) : 0, y = table ? some(-0.28, 0.1) : 0;
-        const double wide = some(0.06, 0.16), deep = some(0.06, 0.16), high = some(0.15, 0.4);
-        const auto add = [&](double x0, double x1, double y0, double y1, double z0, double z1) {
-            parts.push_back({x + x0, x + x1, y + y0, y + y1, top + z0, top + z1});
-        };
-        const double middle = blow_voxel_m * std::round(high / 2 / blow_voxel_m);
-        switch (number / 2 % 5) {
-            case 0:
-                add(0, wide, 0, deep, 0, high);
-                break;
-            case 1:  // flat on the table, upright on the floor
-                if (table)
-                    add(0, 2 * wide, 0, deep, 0, 0.025);
-                else
-                    add(0, 0.05, 0, deep, 0, high);
-                break;
-            case 2:
-                add(0, wide + 0.05, 0, deep, 0, 0.05);
-                add(0, 0.05, 0, deep, 0.05, high);
-                break;
-            case 3:
-                add(0, 0.15, 0, 0.15, 0, 0.025);
-                add(0.05, 0.1, 0.05, 0.1, 0.025, high);
-                add(0.025, 0.125, 0.025, 0.125, high, high + 0.075);
-                break;
-            default:
-                add(0, wide + 0.1, 0, deep, 0, middle);
-                add(0.05, wide + 0.05, 0, deep, middle, high);
-        }
-    }
-};
 
 // What the simulator says of so many things in 16 directions, at three heights.
 void judge_blows(int count) {
@@ -67,22 +18,9 @@ void judge_blows(int count) {
     auto things = nlohmann::json::array();
     for (int n = 0; n < count; ++n) {
         const StruckThing thing(random, n);
-        topple::test::Room room(blow_voxel_m);
-        const auto put = [&](std::int32_t id, const std::vector<BlowBox>& parts) {
-            for (std::size_t p = 1; p < parts.size(); ++p) {
-                const BlowBox& b = parts[p];
-                room.part(id, b[0], b[1], b[2], b[3], b[4], b[5]);
-            }
-        };
-        room.floor(-1, 1, -1, 1);
-        for (std::size_t f = 1; f < thing.fixed.size(); ++f) {
-            const BlowBox& b = thing.fixed[f];
-            room.box(b[0], b[1], b[2], b[3], b[4], b[5]);
-        }
-        const BlowBox& b = thing.parts.front();
-        const auto id = room.box(b[0], b[1], b[2], b[3], b[4], b[5], false);
-        put(id, thing.parts);
-        const topple::test::AssessedRoom scene(*device, room, blow_friction);
+        StruckRoom alone(thing);
+        const std::int32_t id = alone.id;
+        const topple::test::AssessedRoom scene(*device, alone.room, blow_friction);
         const auto& toppling = scene.at_risk[id].toppling;
         ASSERT_TRUE(toppling);
         auto blows = nlohmann::json::array();

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What people pull, push and climb over, in MuJoCo, beside `holds` of scene.json.
+
+  reach.py TOPPLE [--rooms 2] [--kinds bedroom,office] [--people children,toddlers] [--keep DIR] [--jobs 1]
+
+Generates rooms of each kind, parses and exports them. On each object that is free in the export its `holds` act one by one, all
+others being free as well. A hand pulls at the object's middle, at the height of the hold, with a force that grows in a second and
+follows what moves at 0.3 m/s at most, for an arm's length. A climber's weight grows in a second at its place before the front,
+and goes along. The object falls where its centre of mass comes to be 2 cm lower, or it is tilted by 20 degrees, within 5 s.
+"""
+import argparse
+import json
+import math
+import multiprocessing
+import os
+import sys
+import tempfile
+from collections import Counter
+
+import mujoco
+import numpy as np
+
+from landings import FELL_M, LIES_DEG, STATE, UNSTABLE, Room, made
+from rooms import add_options, chosen
+
+GROWS_S, WATCHED_S, HAND_M_S = 1.0, 5.0, 0.3
+RESTS_M_S, RESTS_S = 0.005, 0.3  # slower for so long, it stays as it is
+ARM_M = {'children': 0.51, 'toddlers': 0.38, 'elderly': 0.73}
+
+
+def falls(room, body, hold):
+    """Whether the hold upsets the body."""
+    model, data = room.model, room.data
+    mujoco.mj_setState(model, data, room.state, STATE)
+    mujoco.mj_forward(model, data)
+    force, point = room.to_world[:3, :3] @ hold['force_N'], room.world(hold['place_m'])
+    most = np.linalg.norm(force)
+    way = force / most
+    turn = data.xmat[body].reshape(3, 3)
+    local, start, up = turn.T @ (point - data.xpos[body]), data.xipos[body].copy(), turn[2].copy()
+    if hold['act'] != 'climb':  # at its middle, as it has settled
+        point[:2] = start[:2]
+        local = turn.T @ (point - data.xpos[body])
+    unstable, released = sum(data.warning[w].number for w in UNSTABLE), False
+    last, rests = point, 0
+    first = model.jnt_dofadr[model.body_jntadr[body]]
+    for step in range(round(WATCHED_S / model.opt.timestep)):
+        at = data.xpos[body] + data.xmat[body].reshape(3, 3) @ local
+        speed = (at - last) @ way / model.opt.timestep
+        last = at
+        data.qfrc_applied[:] = 0
+        grown = most * min(1.0, step * model.opt.timestep / GROWS_S)
+        if hold['act'] != 'climb':
+            released = released or (at - point) @ way > ARM_M[hold['by']]
+            grown = 0.0 if released else grown * np.clip((HAND_M_S - speed) / (0.2 * HAND_M_S), 0, 1)
+        mujoco.mj_applyFT(model, data, grown * way, np.zeros(3), at, body, data.qfrc_applied)
+        mujoco.mj_step(model, data)
+        tilt = math.degrees(math.acos(np.clip(data.xmat[body].reshape(3, 3)[2] @ up, -1, 1)))
+        if tilt > LIES_DEG or data.xipos[body][2] < start[2] - FELL_M:
+            break
+        rests = rests + 1 if np.abs(data.qvel[first:first + 6]).max() < RESTS_M_S and step * model.opt.timestep > GROWS_S else 0
+        if rests * model.opt.timestep > RESTS_S:
+            break
+    data.qfrc_applied[:] = 0
+    if sum(data.warning[w].number for w in UNSTABLE) > unstable:
+        raise OverflowError
+    return tilt > LIES_DEG or data.xipos[body][2] < start[2] - FELL_M
+
+
+def judged(topple, kind, seed, keep, people, most):
+    """A row of each hold, at most so many evenly chosen, and why others have none."""
+    with tempfile.TemporaryDirectory(prefix='topple-reach-') as work:
+        folder = os.path.join(keep or work, f'{kind}-{seed}')
+        room = Room(*made(topple, kind, seed, folder, '--people', people, '--disturbance', 'reach', '--quiet'))
+    rows, none, holds = [], Counter(), []
+    for o in room.objects:
+        body = room.bodies.get(o['id'])
+        if not o.get('holds') or body is None or body['fixed'] or body['held'] or not body['parts']:
+            none['not free'] += len(o.get('holds', []))
+            continue
+        n = room.body(o)
+        if n in room.moved:
+            none['moves by itself'] += len(o['holds'])
+            continue
+        holds += [(o, n, hold) for hold in o['holds']]
+    for o, n, hold in holds[::math.ceil(len(holds) / most)] if holds else []:
+        try:
+            rows.append({'room': f'{kind} {seed}', 'object': o['id'], 'mass_kg': o['mass_kg'], 'size_m': o['size_m'],
+                         'by': hold['by'], 'act': hold['act'], 'topple': hold['fall_chance'] > 0, 'mode': o['mode'],
+                         'simulator': bool(falls(room, n, hold))})
+        except OverflowError:
+            none["MuJoCo's numbers overflow"] += 1
+    return rows, none
+
+
+def share(some, all_):
+    return f'{100 * some / all_:.1f} %' if all_ else 'none'
+
+
+def line(rows):
+    both = sum(r['topple'] and r['simulator'] for r in rows)
+    alike = sum(r['topple'] == r['simulator'] for r in rows)
+    return (f"{len(rows)} holds: {share(alike, len(rows))} alike; {both} fall in both, {len(rows) - alike} in one; "
+            f"precision {share(both, sum(r['topple'] for r in rows))}, recall {share(both, sum(r['simulator'] for r in rows))}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
+    add_options(parser, rooms=1)
+    parser.add_argument('--people', default='children,toddlers')
+    parser.add_argument('--most', type=int, default=1000, help='holds of a room (1000)')
+    parser.add_argument('--keep', help='folder for scans, outputs and exports')
+    parser.add_argument('--least', type=float, default=0.9, help='share that must be alike (0.9)')
+    parser.add_argument('--json', help='file for all of them')
+    a = parser.parse_args()
+    rows, none = [], Counter()
+    with multiprocessing.Pool(a.jobs, maxtasksperchild=1) as pool:
+        waiting = [(kind, seed, pool.apply_async(judged, (a.topple, kind, seed, a.keep, a.people, a.most))) for kind, seed in chosen(a)]
+        for kind, seed, result in waiting:
+            its, without = result.get()
+            rows += its
+            none.update(without)
+            print(f'{kind} {seed}: {line(its)}; {dict(without)}', flush=True)
+    for r in rows:
+        if r['topple'] != r['simulator']:
+            print(f"  {r['room']} object {r['object']} ({r['mass_kg']:.1f} kg, {' x '.join(f'{s:.2f}' for s in r['size_m'])} m, {r['mode']}): "
+                  f"{r['by']} {r['act']}, falls in {'topple' if r['topple'] else 'MuJoCo'} alone")
+    for act in ('pull', 'lean', 'climb'):
+        print(f"{act}: {line([r for r in rows if r['act'] == act])}")
+    print(f'all: {line(rows)}; without: {dict(none)}')
+    if a.json:
+        with open(a.json, 'w', encoding='utf-8') as file:
+            json.dump(rows, file)
+    return 0 if rows and sum(r['topple'] == r['simulator'] for r in rows) >= a.least * len(rows) else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())
