@@ -4,10 +4,11 @@
 
   reach.py TOPPLE [--rooms 2] [--kinds bedroom,office] [--people children,toddlers] [--keep DIR] [--jobs 1]
 
-Generates rooms of each kind, parses and exports them. On each object that is free in the export its `holds` act one by one, all
-others being free as well. A hand pulls at the object's middle, at the height of the hold, with a force that grows in a second and
+Generates rooms of each kind, parses and exports them. On each object that is free in the export as it was scanned, without struts
+or a pad and with parts that fill no half more than it, that stands by itself and whose barrier is above its error, its `holds` act one by one; what carries it stays where it is, and other loose
+things, on which topple says that nothing leans for good, do not stand in its way. A hand pulls at the object's middle, at the height of the hold, with a force that grows in a second and
 follows what moves at 0.3 m/s at most, for an arm's length. A climber's weight grows in a second at its place before the front,
-and goes along. The object falls where its centre of mass comes to be 2 cm lower, or it is tilted by 20 degrees, within 5 s.
+and goes along. The object falls where its centre of mass ends 5 mm lower, within 5 s: S(W) is what comes free.
 """
 import argparse
 import json
@@ -21,30 +22,48 @@ from collections import Counter
 import mujoco
 import numpy as np
 
-from landings import FELL_M, LIES_DEG, STATE, UNSTABLE, Room, made
+from landings import STATE, UNSTABLE, Room, made
 from rooms import add_options, chosen
 
 GROWS_S, WATCHED_S, HAND_M_S = 1.0, 5.0, 0.3
+LOWER_M, FELL_M = 0.005, 0.05
 RESTS_M_S, RESTS_S = 0.005, 0.3  # slower for so long, it stays as it is
 ARM_M = {'children': 0.51, 'toddlers': 0.38, 'elderly': 0.73}
 
 
-def falls(room, body, hold):
-    """Whether the hold upsets the body."""
-    model, data = room.model, room.data
+def carriers(room, o):
+    """The bodies of an object, and of what it stands on, down to the floor."""
+    found, todo = set(), [o['id']]
+    while todo:
+        n = todo.pop()
+        if n not in found:
+            found.add(n)
+            todo += room.objects[n]['why']['stands_on']
+    return {room.body(room.objects[n]) for n in found if n in room.bodies}
+
+
+def falls(room, o, hold):
+    """Whether the hold upsets the object."""
+    model, data, body = room.model, room.data, room.body(o)
+    loose = (model.body_dofnum[model.geom_bodyid] > 0) & ~np.isin(model.geom_bodyid, list(carriers(room, o)))
+    model.geom_contype[:] = np.where(loose, 0, room.contype)
+    model.geom_conaffinity[:] = np.where(loose, 0, room.conaffinity)
     mujoco.mj_setState(model, data, room.state, STATE)
     mujoco.mj_forward(model, data)
     force, point = room.to_world[:3, :3] @ hold['force_N'], room.world(hold['place_m'])
     most = np.linalg.norm(force)
     way = force / most
     turn = data.xmat[body].reshape(3, 3)
-    local, start, up = turn.T @ (point - data.xpos[body]), data.xipos[body].copy(), turn[2].copy()
+    local, start = turn.T @ (point - data.xpos[body]), data.xipos[body].copy()
     if hold['act'] != 'climb':  # at its middle, as it has settled
         point[:2] = start[:2]
         local = turn.T @ (point - data.xpos[body])
     unstable, released = sum(data.warning[w].number for w in UNSTABLE), False
     last, rests = point, 0
-    first = model.jnt_dofadr[model.body_jntadr[body]]
+    first, place = model.jnt_dofadr[model.body_jntadr[body]], model.jnt_qposadr[model.body_jntadr[body]]
+    others, moving = np.ones(model.nq, bool), np.ones(model.nv, bool)
+    others[place:place + 7], moving[first:first + 6] = False, False
+    still = data.qpos[others].copy()
     for step in range(round(WATCHED_S / model.opt.timestep)):
         at = data.xpos[body] + data.xmat[body].reshape(3, 3) @ local
         speed = (at - last) @ way / model.opt.timestep
@@ -53,11 +72,13 @@ def falls(room, body, hold):
         grown = most * min(1.0, step * model.opt.timestep / GROWS_S)
         if hold['act'] != 'climb':
             released = released or (at - point) @ way > ARM_M[hold['by']]
-            grown = 0.0 if released else grown * np.clip((HAND_M_S - speed) / (0.2 * HAND_M_S), 0, 1)
+            # Not so stiff that it throws what is light.
+            stiff = 0.1 * model.body_mass[body] / model.opt.timestep
+            grown = 0.0 if released else np.clip(stiff * (HAND_M_S - speed), 0, grown)
         mujoco.mj_applyFT(model, data, grown * way, np.zeros(3), at, body, data.qfrc_applied)
         mujoco.mj_step(model, data)
-        tilt = math.degrees(math.acos(np.clip(data.xmat[body].reshape(3, 3)[2] @ up, -1, 1)))
-        if tilt > LIES_DEG or data.xipos[body][2] < start[2] - FELL_M:
+        data.qpos[others], data.qvel[moving] = still, 0
+        if data.xipos[body][2] < start[2] - FELL_M:
             break
         rests = rests + 1 if np.abs(data.qvel[first:first + 6]).max() < RESTS_M_S and step * model.opt.timestep > GROWS_S else 0
         if rests * model.opt.timestep > RESTS_S:
@@ -65,7 +86,7 @@ def falls(room, body, hold):
     data.qfrc_applied[:] = 0
     if sum(data.warning[w].number for w in UNSTABLE) > unstable:
         raise OverflowError
-    return tilt > LIES_DEG or data.xipos[body][2] < start[2] - FELL_M
+    return data.xipos[body][2] < start[2] - LOWER_M
 
 
 def judged(topple, kind, seed, keep, people, most):
@@ -73,6 +94,8 @@ def judged(topple, kind, seed, keep, people, most):
     with tempfile.TemporaryDirectory(prefix='topple-reach-') as work:
         folder = os.path.join(keep or work, f'{kind}-{seed}')
         room = Room(*made(topple, kind, seed, folder, '--people', people, '--disturbance', 'reach', '--quiet'))
+    room.model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # what is held still would wake
+    room.contype, room.conaffinity = room.model.geom_contype.copy(), room.model.geom_conaffinity.copy()
     rows, none, holds = [], Counter(), []
     for o in room.objects:
         body = room.bodies.get(o['id'])
@@ -83,12 +106,18 @@ def judged(topple, kind, seed, keep, people, most):
         if n in room.moved:
             none['moves by itself'] += len(o['holds'])
             continue
-        holds += [(o, n, hold) for hold in o['holds']]
-    for o, n, hold in holds[::math.ceil(len(holds) / most)] if holds else []:
+        if body['struts'] or body['on_pad'] or body['excess_share'] > 0.5:
+            none['another shape'] += len(o['holds'])
+            continue
+        if o['barrier_J'] <= o['barrier_error_J'] or o['rest_probability'] < 0.5:
+            none['hardly seen to stand'] += len(o['holds'])
+            continue
+        holds += [(o, hold) for hold in o['holds']]
+    for o, hold in holds[::math.ceil(len(holds) / most)] if holds else []:
         try:
             rows.append({'room': f'{kind} {seed}', 'object': o['id'], 'mass_kg': o['mass_kg'], 'size_m': o['size_m'],
                          'by': hold['by'], 'act': hold['act'], 'topple': hold['fall_chance'] > 0, 'mode': o['mode'],
-                         'simulator': bool(falls(room, n, hold))})
+                         'simulator': bool(falls(room, o, hold))})
         except OverflowError:
             none["MuJoCo's numbers overflow"] += 1
     return rows, none
