@@ -51,9 +51,10 @@ SeenSpace::SeenSpace(const Scene& scene, const SpaceMap& space)
     for (std::size_t a = 0; a < 3; ++a) {
         size_[a] = high[a] - low_[a] + 1;
         if (size_[a] > most_cells / all)
-            throw Error(ErrorKind::input,
-                        scene.source + ": is too large to be compared: it spans more than " +
-                            std::to_string(most_cells) + " voxels; parse it with a larger --voxel");
+            throw Error(ErrorKind::input, scene.source +
+                                              ": is too large to be compared: it spans more than " +
+                                              std::to_string(most_cells) +
+                                              " voxels; parse it with a larger voxel_m (--voxel)");
         all *= size_[a];
     }
     cells_.assign(static_cast<std::size_t>(all), unseen);
