@@ -135,14 +135,17 @@ class CoarseRoom {
 // The likeliest motions, a few of each of the four turns.
 std::vector<Motion> guesses(const Side& a, const Side& b, const std::function<void()>& poll) {
     const CoarseRoom on(a), from(b);
+    const std::array profiles_a{Profile(a.surface, Motion::Identity(), 0),
+                                Profile(a.surface, Motion::Identity(), 1),
+                                Profile(a.surface, Motion::Identity(), 2)};
     std::vector<Motion> out;
     for (int turn = 0; turn < 4; ++turn) {
         poll();
         const Motion turned = quarters(turn);
         std::array<std::vector<double>, 3> shifts;
         for (int axis = 0; axis < 3; ++axis)
-            shifts[static_cast<std::size_t>(axis)] = Profile(a.surface, Motion::Identity(), axis)
-                                                         .shifts(Profile(b.surface, turned, axis));
+            shifts[static_cast<std::size_t>(axis)] =
+                profiles_a[static_cast<std::size_t>(axis)].shifts(Profile(b.surface, turned, axis));
         std::vector<std::pair<double, Eigen::Vector3d>> tried;
         for (const double x : shifts[0])
             for (const double y : shifts[1])

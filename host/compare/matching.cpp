@@ -14,6 +14,7 @@
 
 #include "core/alike.h"
 #include "core/rotation.h"
+#include "safety/unsafety_category.h"
 
 namespace topple::comparing {
 namespace {
@@ -259,8 +260,13 @@ class Matching {
         out.safer = rank(b) < rank(a) && after < before;
     }
     static int rank(const Object& object) {
-        constexpr std::array<const char*, 4> names{"none", "low", "medium", "high"};
-        return static_cast<int>(std::ranges::find(names, object.unsafety_category) - names.begin());
+        using safety::Category;
+        int rank = 0;
+        for (const Category c : {Category::none, Category::low, Category::medium, Category::high}) {
+            if (object.unsafety_category == safety::to_string(c)) break;
+            ++rank;
+        }
+        return rank;
     }
     // Things of A that hold an object; `none`: the building.
     template <class ThingOf>

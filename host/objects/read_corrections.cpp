@@ -4,7 +4,7 @@
 
 #include "core/json.h"
 #include "core/room_measures.h"
-#include "io/json_text.h"
+#include "io/json_entry.h"
 #include "io/text.h"
 #include "objects/corrections_json.h"
 #include "topple/corrections.h"
@@ -93,48 +93,25 @@ std::optional<std::string> fault_of_one(const Correction& c, const FieldNames& n
 }
 
 // One entry of the list.
-class Entry {
+class Entry : io::JsonEntry {
   public:
-    Entry(const std::filesystem::path& source, std::size_t number, const Json& json)
-        : source_(source), number_(number), json_(json) {}
+    using JsonEntry::JsonEntry;
 
     Correction read() {
-        if (!json_.is_object())
-            wrong(std::string("is ") + json_.type_name() + " where {..} is due");
         Correction out;
         out.kind = kind();
-        label_.append(" (").append(to_string(out.kind)).append(")");
+        call_also(std::string(" (") + to_string(out.kind) + ")");
         out.at_m = spots("at_m");
         if (out.kind == Correction::Kind::apart) out.from_m = spots("from_m");
         if (out.kind == Correction::Kind::hollow) out.wall_m = number("wall_m");
         if (out.kind == Correction::Kind::mass) out.mass_kg = number("kg");
         if (out.kind == Correction::Kind::name) out.name = text("name");
-        if (json_.contains("was")) out.was = text("was");
+        if (has("was")) out.was = text("was");
         if (const auto what = fault_of_one(out, in_files())) wrong(*what);
         return out;
     }
 
   private:
-    [[noreturn]] void wrong(const std::string& what) const {
-        io::fail(source_, which(number_) + label_ + ": " + what);
-    }
-    const Json& field(const char* name) const {
-        const auto found = json_.find(name);
-        if (found == json_.end()) wrong("has no " + io::in_quotes(name));
-        return *found;
-    }
-    std::string text(const char* name) const {
-        const Json& value = field(name);
-        if (!value.is_string())
-            wrong(io::in_quotes(name) + " is " + value.type_name() + " where a text is due");
-        return value.get<std::string>();
-    }
-    double number(const char* name) const {
-        const Json& value = field(name);
-        if (!value.is_number())
-            wrong(io::in_quotes(name) + " is " + value.type_name() + " where a number is due");
-        return value.get<double>();
-    }
     Correction::Kind kind() const {
         const std::string name = text("do");
         if (const auto kind = io::correction_kind(name)) return *kind;
@@ -160,11 +137,6 @@ class Entry {
         }
         return out;
     }
-
-    const std::filesystem::path& source_;
-    std::size_t number_;
-    const Json& json_;
-    std::string label_;
 };
 
 }  // namespace
@@ -192,20 +164,15 @@ std::vector<Correction> corrections_of(std::string_view text, const std::string&
         io::fail(source, "has " + io::bytes_text(text.size()) + ", more than the limit of " +
                              io::bytes_text(largest_corrections_bytes));
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
-    const Json json = io::parse_json(source, text);
-    const auto schema = json.is_object() ? json.find("schema") : json.end();
-    if (!json.is_object() || schema == json.end() || *schema != corrections_schema)
-        io::fail(source, "is no file of corrections: its \"schema\" is not " +
-                             io::in_quotes(corrections_schema));
-    const auto list = json.find("corrections");
-    if (list == json.end() || !list->is_array()) io::fail(source, "has no list \"corrections\"");
-    if (list->size() > most_corrections)
-        io::fail(source, "has " + std::to_string(list->size()) +
+    const Json list =
+        io::listed_in(source, text, "file of corrections", corrections_schema, "corrections");
+    if (list.size() > most_corrections)
+        io::fail(source, "has " + std::to_string(list.size()) +
                              " corrections, more than the limit of " +
                              std::to_string(most_corrections));
     std::vector<Correction> out;
-    for (std::size_t n = 0; n < list->size(); ++n)
-        out.push_back(Entry(source, n, (*list)[n]).read());
+    for (std::size_t n = 0; n < list.size(); ++n)
+        out.push_back(Entry(source, which(n), list[n]).read());
     return out;
 }
 

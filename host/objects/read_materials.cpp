@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 
-#include "io/json_text.h"
+#include "io/json_entry.h"
 #include "io/text.h"
 #include "topple/materials.h"
 
@@ -45,52 +43,20 @@ std::optional<std::string> fault_of_kind(const ThingKind& kind) {
     return std::nullopt;
 }
 
-// One kind of the list. All throw Error(input) that names it and what is wrong.
-class KindEntry {
-  public:
-    KindEntry(const std::filesystem::path& file, std::size_t number, const Json& json)
-        : file_(file), label_(numbered_kind(number)), json_(json) {
-        if (!json.is_object()) wrong(std::string("is ") + json.type_name() + ", not {..}");
-    }
-
-    ThingKind read() {
-        ThingKind out;
-        out.name = name();
-        const Json& size = field("size_m");
-        if (!size.is_array() || size.size() != 3)
-            wrong("\"size_m\" is no list of three lengths, as in [0.08, 0.09, 0.11]");
-        for (std::size_t a = 0; a < 3; ++a)
-            out.size_m[a] = number(size[a], "an edge in \"size_m\"");
-        std::ranges::sort(out.size_m);
-        out.fill = number(field("fill"), "\"fill\"");
-        out.density_kg_m3 = number(field("density_kg_m3"), "\"density_kg_m3\"");
-        out.spread = number(field("spread"), "\"spread\"");
-        return out;
-    }
-
-  private:
-    [[noreturn]] void wrong(const std::string& what) const {
-        io::fail(file_, label_ + ": " + what);
-    }
-    const Json& field(const char* name) const {
-        const auto found = json_.find(name);
-        if (found == json_.end()) wrong("has no " + io::in_quotes(name));
-        return *found;
-    }
-    double number(const Json& value, const char* what) const {
-        if (!value.is_number()) wrong(std::string(what) + " is " + value.type_name());
-        return value.get<double>();
-    }
-    std::string name() const {
-        const Json& value = field("name");
-        if (!value.is_string()) wrong(std::string("\"name\" is ") + value.type_name());
-        return value.get<std::string>();
-    }
-
-    const std::filesystem::path& file_;
-    std::string label_;
-    const Json& json_;
-};
+ThingKind kind_of(io::JsonEntry entry) {
+    ThingKind out;
+    out.name = entry.text("name");
+    const Json& size = entry.field("size_m");
+    if (!size.is_array() || size.size() != 3 ||
+        !std::ranges::all_of(size, [](const Json& edge) { return edge.is_number(); }))
+        entry.wrong("\"size_m\" is no list of three lengths, as in [0.08, 0.09, 0.11]");
+    for (std::size_t a = 0; a < 3; ++a) out.size_m[a] = size[a].get<double>();
+    std::ranges::sort(out.size_m);
+    out.fill = entry.number("fill");
+    out.density_kg_m3 = entry.number("density_kg_m3");
+    out.spread = entry.number("spread");
+    return out;
+}
 
 }  // namespace
 
@@ -106,16 +72,11 @@ std::optional<std::string> fault_of(const Materials& materials) {
 Materials read_materials(const std::filesystem::path& file) {
     if (file == "household") return household_materials();
     const io::FileBytes bytes = io::read_file(file, largest_materials_bytes);
-    const Json json = io::parse_json(file, bytes.text());
-    const auto schema = json.is_object() ? json.find("schema") : json.end();
-    if (!json.is_object() || schema == json.end() || *schema != materials_schema)
-        io::fail(file, "is no table of materials: its \"schema\" is not " +
-                           io::in_quotes(materials_schema));
-    const auto list = json.find("kinds");
-    if (list == json.end() || !list->is_array()) io::fail(file, "has no list \"kinds\"");
+    const Json list =
+        io::listed_in(file, bytes.text(), "table of materials", materials_schema, "kinds");
     Materials out;
-    for (std::size_t n = 0; n < list->size(); ++n)
-        out.push_back(KindEntry(file, n, (*list)[n]).read());
+    for (std::size_t n = 0; n < list.size(); ++n)
+        out.push_back(kind_of({file, numbered_kind(n), list[n]}));
     if (const auto wrong = fault_of(out)) io::fail(file, *wrong);
     return out;
 }
