@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,6 +13,8 @@
 #include "export/footing.h"
 #include "export/separate.h"
 #include "export/stand.h"
+#include "physics/infinity.h"
+#include "physics/tipping.h"
 
 namespace topple::exports {
 namespace {
@@ -33,29 +36,56 @@ struct Strut {
     ConvexPart part;
     std::vector<Point2> foot;  // where it adds to the footing
     double length_m = 0;
+    Point2 at{};
+    // Where what it stands on is not level there: a level step on that, of that body.
+    std::optional<ConvexPart> step{};
+    std::size_t on = 0;
 };
+
+bool meets(const std::vector<Body>& bodies, const ConvexPart& part, const Body& but) {
+    return any_near(bodies, part, 0, [&](const Body& other, const ConvexPart& stays) {
+        return &other != &but && overlap(part, stays);
+    });
+}
+
+// Unless one that was added before is in the way.
+void add(Strut strut, std::vector<Body>& bodies, Body& body) {
+    if (meets(bodies, strut.part, body)) return;
+    if (strut.step) {
+        if (meets(bodies, *strut.step, bodies[strut.on])) return;
+        bodies[strut.on].parts.push_back(*std::move(strut.step));
+    }
+    body.parts.push_back(std::move(strut.part));
+}
 
 // A strut below a body, which meets no other one but with its foot.
 std::optional<Strut> strut_at(const std::vector<Body>& bodies, const std::vector<bool>& stands,
                               const Body& body, const Point2& at, double half_m) {
     constexpr double into_m = 1e-3;  // the body, so that it is one with it
+    constexpr double level_m = 1e-4, border_m = 1e-3;
     const auto middle = gap_below(bodies, stands, body, at);
     if (!middle) return std::nullopt;
-    double foot = middle->to_m;
-    for (const double x : {-half_m, half_m})
-        for (const double y : {-half_m, half_m})
-            if (const auto gap = gap_below(bodies, stands, body, {at[0] + x, at[1] + y}))
-                foot = std::max(foot, gap->to_m);
-    if (foot > middle->from_m) return std::nullopt;
-    auto strut = bar({at[0], at[1], middle->from_m + into_m}, foot, half_m);
-    if (!strut || any_near(bodies, *strut, 0, [&](const Body& other, const ConvexPart& part) {
-            return &other != &body && overlap(*strut, part);
-        }))
-        return std::nullopt;
-    std::vector<Point2> feet;
-    for (const Vec3& c : strut->corner)
-        if (c[2] < strut->low[2] + 1e-9) feet.push_back({c[0], c[1]});
-    return Strut{*std::move(strut), std::move(feet), middle->from_m - foot};
+    double foot = middle->to_m, lowest = foot;
+    for (const double x : {-half_m, half_m}) {
+        for (const double y : {-half_m, half_m}) {
+            const auto gap = gap_below(bodies, stands, body, {at[0] + x, at[1] + y});
+            if (!gap) continue;
+            foot = std::max(foot, gap->to_m);
+            lowest = std::min(lowest, gap->to_m);
+        }
+    }
+    if (foot > middle->from_m || foot - lowest > 4 * half_m) return std::nullopt;
+    auto part = bar({at[0], at[1], middle->from_m + into_m}, foot, half_m);
+    if (!part || meets(bodies, *part, body)) return std::nullopt;
+    Strut out{*std::move(part), {}, middle->from_m - foot, at};
+    out.on = middle->on;
+    if (foot - lowest > level_m) {
+        out.step = bar({at[0], at[1], foot}, lowest - into_m, half_m + border_m);
+        if (!out.step || meets(bodies, *out.step, bodies[out.on])) return std::nullopt;
+    }
+    for (const Vec3& c : out.part.corner)
+        if (c[2] < out.part.low[2] + 1e-9) out.foot.push_back({c[0], c[1]});
+    return out;
 }
 
 // Of a level grid.
@@ -89,7 +119,7 @@ std::vector<Strut> posts_of(const std::vector<Body>& bodies, const Body& body, d
         if (slab && !any_near(bodies, *slab, 0, [&](const Body& other, const ConvexPart& part) {
                 return !other.fixed && overlap(*slab, part);
             }))
-            out.push_back({*std::move(slab), {{c[0], c[1]}}, c[2] - lowest});
+            out.push_back({*std::move(slab), {{c[0], c[1]}}, c[2] - lowest, {c[0], c[1]}});
     }
     std::ranges::stable_sort(out, {}, &Strut::length_m);
     return out;
@@ -184,20 +214,73 @@ std::vector<Strut> enough(const std::vector<Point2>& points, const Weights& weig
     return out;
 }
 
-// Adds struts where the footing is not firm. Whether the body stands then.
-bool add_struts(const std::vector<Body>& bodies, const std::vector<bool>& stands,
-                const Weights& weights, Body& body, double half_m) {
-    const std::vector<Point2> points = footing_of(bodies, stands, body);
-    const double firm = firm_share * body.firm_m, margin = weights.margin(points);
-    if (margin >= firm) return true;
+double area_m2(const Point2& a, const Point2& b, const Point2& c) {
+    return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+}
+
+// Of struts, those at the corners of their hull: four, or more where each one that is left out
+// would take much of its area away. A body stands as firmly on these as on all.
+std::vector<Strut> corners_of(const std::vector<Strut>& struts) {
+    constexpr std::size_t few = 4, most = 8;
+    constexpr double little = 0.04;  // of the hull's area
+    std::map<Point2, std::size_t> which;
+    std::vector<Point2> hull;
+    for (std::size_t n = 0; n < struts.size(); ++n) {
+        which.emplace(struts[n].at, n);
+        hull.push_back(struts[n].at);
+    }
+    hull = physics::convex_polygon(std::move(hull));
+    double all_m2 = 0;
+    for (std::size_t n = 1; n + 1 < hull.size(); ++n)
+        all_m2 += area_m2(hull[0], hull[n], hull[n + 1]);
+    while (hull.size() > few) {
+        std::size_t least = 0;
+        double least_m2 = physics::infinity;
+        for (std::size_t n = 0; n < hull.size(); ++n) {
+            const std::size_t last = (n + hull.size() - 1) % hull.size();
+            const double lost_m2 = area_m2(hull[last], hull[n], hull[(n + 1) % hull.size()]);
+            if (lost_m2 >= least_m2) continue;
+            least = n;
+            least_m2 = lost_m2;
+        }
+        if (hull.size() <= most && least_m2 > little * all_m2) break;
+        hull.erase(hull.begin() + static_cast<std::ptrdiff_t>(least));
+    }
+    std::vector<Strut> out;
+    for (const Point2& at : hull) out.push_back(struts[which.at(at)]);
+    return out;
+}
+
+// Stands a body on feet at the corners of where it comes close to what carries it, with nothing
+// else of it touching that; and where these are not firm on struts, besides. Whether it stands
+// then.
+bool set_on_feet(std::vector<Body>& bodies, const std::vector<bool>& stands, const Weights& weights,
+                 std::size_t n, double half_m) {
+    Body& body = bodies[n];
+    const double firm = firm_share * body.firm_m;
     const Extents<double> box = box_around(body.parts);
     const double longest_m = std::max(longest_share * (box.high[2] - box.low[2]), 8 * half_m);
-    for (Strut& strut :
-         enough(points, weights, struts_of(bodies, stands, body, half_m, longest_m), firm)) {
-        body.parts.push_back(std::move(strut.part));
-        ++body.struts;
+    const double close_m = 4 * half_m;
+    std::vector<Strut> close, far;
+    for (Strut& strut : struts_of(bodies, stands, body, half_m, longest_m))
+        (strut.length_m <= close_m ? close : far).push_back(std::move(strut));
+    std::vector<Strut> feet = corners_of(close);
+    std::vector<Point2> points;
+    for (const Strut& foot : feet) points.insert(points.end(), foot.foot.begin(), foot.foot.end());
+    if (weights.margin(points) >= firm) {
+        clear_below(bodies, body);
+        for (Strut& foot : feet) add(std::move(foot), bodies, body);
+        return true;
     }
-    return margin > 0 || body.struts > 0;
+    points = footing_of(bodies, stands, body);
+    const double margin = weights.margin(points);
+    if (margin >= firm) return true;
+    close.insert(close.end(), std::move_iterator(far.begin()), std::move_iterator(far.end()));
+    std::vector<Strut> more = enough(points, weights, std::move(close), firm);
+    const bool holds = margin > 0 || !more.empty();
+    body.struts += static_cast<int>(more.size());
+    for (Strut& strut : more) add(std::move(strut), bodies, body);
+    return holds;
 }
 
 // Whether it touches something fixed beside it.
@@ -219,6 +302,34 @@ bool near_below(const std::vector<Body>& bodies, const Body& body) {
     return any_near(bodies, below, 0, [&](const Body& other, const ConvexPart& part) {
         return &other != &body && part.high[2] <= below.high[2] + close_m;
     });
+}
+
+// The first standing body with a part so close to a strut; the number of bodies where none has.
+std::size_t beside(const std::vector<Body>& bodies, const std::vector<bool>& stands, std::size_t of,
+                   const ConvexPart& strut, double within_m) {
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        if (n == of || !stands[n]) continue;
+        for (const ConvexPart& part : bodies[n].parts)
+            if (near(part, strut, within_m) && apart(part, strut).gap_m <= within_m) return n;
+    }
+    return bodies.size();
+}
+
+// Lets what carries a body go on under low corners of it, by no more than what surfaces are known
+// to. Whether the body stands then.
+bool add_ledges(std::vector<Body>& bodies, const std::vector<bool>& stands, const Weights& weights,
+                std::size_t n, double half_m) {
+    std::vector<Strut> ledges;
+    for (Strut& post : posts_of(bodies, bodies[n], half_m)) {
+        post.on = beside(bodies, stands, n, post.part, 4 * half_m);
+        if (post.on == bodies.size()) continue;
+        if (bodies[post.on].fixed || !meets(bodies, post.part, bodies[post.on]))
+            ledges.push_back(std::move(post));
+    }
+    std::vector<Strut> taken = enough(footing_of(bodies, stands, bodies[n]), weights,
+                                      std::move(ledges), firm_share * bodies[n].firm_m);
+    for (Strut& ledge : taken) bodies[ledge.on].parts.push_back(std::move(ledge.part));
+    return !taken.empty();
 }
 
 // Puts a body on a fixed pad, which together with a footing that it has makes it stand firmly:
@@ -248,7 +359,9 @@ void brace(std::vector<Body>& bodies, double thick_m) {
         // Of what falls by itself nothing is held up.
         if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
         stands[n] = true;
-        if (add_struts(bodies, stands, weights[n], bodies[n], thick_m / 2)) continue;
+        if (set_on_feet(bodies, stands, weights[n], n, thick_m / 2) ||
+            add_ledges(bodies, stands, weights[n], n, thick_m / 2))
+            continue;
         if ((near_below(bodies, bodies[n]) || !leans_on_fixed(bodies, bodies[n], thick_m)) &&
             pad_up(bodies, n, footing_of(bodies, stands, bodies[n]), weights[n], thick_m / 2)) {
             stands.push_back(true);

@@ -71,6 +71,7 @@ double margin_m(const std::vector<Point2>& points, const Vec3& center_m) {
 std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<bool>& stands,
                              const Body& body, const Point2& at) {
     constexpr double same_m = 1e-5;
+    constexpr double steep_cosine = 0.3;
     Gap gap{physics::infinity, -physics::infinity};
     for (const ConvexPart& part : body.parts)
         if (const auto line = plumb(part, at)) gap.from_m = std::min(gap.from_m, line->low);
@@ -83,7 +84,8 @@ std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<
             // What reaches higher is beside it.
             if (!line || line->high > gap.from_m + same_m || line->high <= gap.to_m) continue;
             gap.to_m = std::min(line->high, gap.from_m);
-            carries = stands[n] && line->level >= carries_cosine;
+            gap.on = n;
+            carries = stands[n] && line->level >= steep_cosine;
         }
     }
     if (!carries) return std::nullopt;

@@ -23,9 +23,10 @@ double margin_m(const std::vector<Point2>& points, const Vec3& center_m);
 // The gap below a body along a plumb line: from its lowest point there down to what is below.
 struct Gap {
     double from_m = 0, to_m = 0;  // heights
+    std::size_t on = 0;           // which body is below
 };
-// Nothing where the body does not lie on that line, or where nothing, or what does not stand
-// itself, is below.
+// Nothing where the body does not lie on that line, or where nothing, what does not stand itself,
+// or a steep side is below.
 std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<bool>& stands,
                              const Body& body, const Point2& at);
 

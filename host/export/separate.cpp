@@ -261,6 +261,22 @@ void each_pair(Bodies& bodies, const Use& use) {
     }
 }
 
+constexpr double clear_m = 3e-4;
+
+// Cuts what of a body touches another one in such a way.
+template <class Way>
+void clear(Body& body, const Body& other, const Way& way) {
+    for (ConvexPart& part : body.parts) {
+        for (const ConvexPart& stays : other.parts) {
+            if (!near(part, stays, clear_m)) continue;
+            const Apart lie = apart(stays, part);
+            if (lie.gap_m < -touching_m || lie.gap_m >= clear_m || !way(lie)) continue;
+            const double place = extent_along(stays, lie.normal).high + clear_m;
+            if (auto left = cut(part, {opposite(lie.normal), -place})) part = *std::move(left);
+        }
+    }
+}
+
 }  // namespace
 
 Apart apart(const ConvexPart& a, const ConvexPart& b) {
@@ -296,19 +312,18 @@ void separate(std::vector<Body>& bodies) {
 }
 
 void clear_sides(std::vector<Body>& bodies) {
-    constexpr double clear_m = 3e-4;
     each_pair(bodies, [](const Body& below, Body& above) {
-        for (ConvexPart& part : above.parts) {
-            for (const ConvexPart& stays : below.parts) {
-                if (!near(part, stays, clear_m)) continue;
-                const Apart lie = apart(stays, part);
-                if (lie.gap_m < -touching_m || lie.gap_m >= clear_m) continue;
-                if (std::abs(lie.normal[2]) >= carries_cosine) continue;
-                const double place = extent_along(stays, lie.normal).high + clear_m;
-                if (auto left = cut(part, {opposite(lie.normal), -place})) part = *std::move(left);
-            }
-        }
+        clear(above, below,
+              [](const Apart& lie) { return std::abs(lie.normal[2]) < carries_cosine; });
     });
+}
+
+void clear_below(const std::vector<Body>& bodies, Body& body) {
+    const Extents<double> box = box_around(body.parts);
+    for (const Body& other : bodies) {
+        if (&other == &body || !near(box_around(other.parts), box, clear_m)) continue;
+        clear(body, other, [](const Apart& lie) { return lie.normal[2] >= carries_cosine; });
+    }
 }
 
 double deepest_overlap_m(const std::vector<Body>& bodies) {

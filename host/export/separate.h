@@ -50,6 +50,8 @@ void separate(std::vector<Body>& bodies);
 // Opens a gap, much less than what one sees, between the sides of bodies that touch without one
 // carrying the other: each contact costs a simulator time.
 void clear_sides(std::vector<Body>& bodies);
+// The same below a body, which has feet to stand on.
+void clear_below(const std::vector<Body>& bodies, Body& body);
 
 // The deepest overlap of any two bodies, metres.
 double deepest_overlap_m(const std::vector<Body>& bodies);

@@ -135,7 +135,6 @@ SimScene without_visuals(const Scene& scene, const SolidScene& solids, ThreadPoo
     separate(out.bodies);
     settle(out.bodies, std::max(known_m, solids.voxel_m() / 2));
     separate(out.bodies);
-    flatten_feet(out.bodies, solids.voxel_m());
     clear_sides(out.bodies);
     // Cuts have added corners.
     for (Body& body : out.bodies)

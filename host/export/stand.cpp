@@ -57,28 +57,4 @@ void settle(std::vector<Body>& bodies, double most_m) {
     }
 }
 
-void flatten_feet(std::vector<Body>& bodies, double within_m) {
-    for (const std::size_t n : by_level(bodies)) {
-        Body& body = bodies[n];
-        if (body.fixed) continue;
-        each_footing(bodies, body, within_m,
-                     [&](ConvexPart& part, const ConvexPart& below, const Apart& lie) {
-                         std::vector<Vec3> points = part.corner;
-                         const double top = extent_along(below, lie.normal).high;
-                         for (const Vec3& c : part.corner) {
-                             const double above = dot(lie.normal, c) - top;
-                             if (above > 0 && above <= within_m)
-                                 points.push_back(along(c, -above, lie.normal));
-                         }
-                         if (points.size() == part.corner.size()) return;
-                         auto flat = reshaped(part, points);
-                         if (!flat) return;
-                         const auto in_the_way = [&](const Body& other, const ConvexPart& stays) {
-                             return &other != &body && apart(*flat, stays).gap_m < -1e-6;
-                         };
-                         if (!any_near(bodies, *flat, 0, in_the_way)) part = *std::move(flat);
-                     });
-    }
-}
-
 }  // namespace topple::exports

@@ -13,8 +13,4 @@ std::vector<std::size_t> by_level(const std::vector<Body>& bodies);
 // Lets each body down until it touches what carries it, by `most_m` at most.
 void settle(std::vector<Body>& bodies, double most_m);
 
-// Makes feet flat: corners that lie within `within_m` above what carries them come down to it,
-// where no other body is in their way. Parts must not overlap.
-void flatten_feet(std::vector<Body>& bodies, double within_m);
-
 }  // namespace topple::exports

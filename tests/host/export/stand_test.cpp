@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "export/stand.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "export/brace.h"
 #include "export/floor.h"
 #include "export/footing.h"
 #include "export/separate.h"
 #include "export/simplify.h"
+#include "export/touching.h"
 #include "host/export/blocks.h"
 #include "testing.h"
 
@@ -98,6 +102,60 @@ std::string kept(std::vector<Body> bodies) {
         out += bodies[n].held ? 'h' : bodies[n].on_pad ? 'p' : '.';
     }
     return out;
+}
+
+// Boxes under a body, whose lowest corners lie at a height.
+std::size_t feet_at(const Body& body, double z) {
+    return static_cast<std::size_t>(std::ranges::count_if(body.parts, [&](const ConvexPart& part) {
+        return std::abs(part.low[2] - z) < 1e-9 && part.high[0] - part.low[0] < 0.011;
+    }));
+}
+
+TEST(Brace, WhatIsTiltedByNoiseStandsOnFourFeetAlone) {
+    std::vector<Vec3> points = block({0, 0, 0}, {0.2, 0.2, 0.5}).corner;
+    for (Vec3& p : points)
+        if (p[2] == 0 && p[0] > 0.1) p[2] = 0.004;
+    std::vector<Body> bodies{ground(), firm(*hull_part(points), 1, {0})};
+    brace(bodies, 0.01);
+    ASSERT_EQ(bodies.size(), 2u);
+    EXPECT_FALSE(bodies[1].on_pad);
+    EXPECT_EQ(bodies[1].struts, 0);
+    EXPECT_EQ(feet_at(bodies[1], 0), 4u);
+    EXPECT_GT(bodies[1].parts[0].low[2], 1e-4);
+    EXPECT_GT(margin_m(footing_of(bodies, {true, true}, bodies[1]), bodies[1].center_m), 0.09);
+    EXPECT_LT(deepest_overlap_m(bodies), 1e-6);
+}
+
+TEST(Brace, FeetOnASlopeHaveLevelStepsOfWhatCarriesThem) {
+    std::vector<Vec3> points = block({-1, -1, -0.1}, {1, 1, 0}).corner;
+    for (Vec3& p : points)
+        if (p[2] == 0) p[2] += 0.05 * p[0];
+    std::vector<Body> bodies{body_of(*hull_part(points), 0, {}),
+                             firm(block({0, 0, 0.01}, {0.2, 0.2, 0.5}), 1, {0})};
+    brace(bodies, 0.01);
+    ASSERT_EQ(bodies.size(), 2u);
+    EXPECT_EQ(bodies[0].parts.size(), 5u);
+    std::size_t level = 0;
+    for (const Touch& touch : touches_of(bodies)) level += touch.normal[2] == 1;
+    EXPECT_GE(level, 4u);
+    EXPECT_LT(deepest_overlap_m(bodies), 1e-6);
+}
+
+TEST(Brace, WhatCarriesGoesOnByNoMoreThanAVoxel) {
+    // A shelf that ends short of the middle of what stands on it.
+    const auto shelf_to = [](double x) {
+        return std::vector<Body>{body_of(block({-1, 0, 0.9}, {x, 0.2, 1}), 0, {}),
+                                 firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 1, {0})};
+    };
+    std::vector<Body> bodies = shelf_to(0.19);
+    bodies[1].center_m[0] = 0.195;
+    brace(bodies, 0.01);
+    EXPECT_EQ(bodies.size(), 2u);
+    EXPECT_GT(bodies[0].parts.size(), 1u);
+    EXPECT_FALSE(bodies[1].on_pad || bodies[1].held);
+    bodies = shelf_to(0.05);
+    brace(bodies, 0.01);
+    EXPECT_TRUE(bodies[1].on_pad);
 }
 
 TEST(Brace, OnlyWhatNothingHoldsGetsAPadOrIsHeld) {
@@ -256,17 +314,6 @@ TEST(Simplified, NothingMoreThanTheToleranceIsLost) {
     EXPECT_LT(left.corner.size(), part.corner.size());
     for (const HalfSpace& side : left.face)
         EXPECT_LE(extent_along(part, side.normal).high, side.offset_m + 0.001);
-}
-
-TEST(FlattenFeet, ATiltedFootBecomesFlat) {
-    std::vector<Vec3> points = block({0, 0, 0}, {0.2, 0.2, 0.5}).corner;
-    for (Vec3& p : points)
-        if (p[2] == 0 && p[0] > 0.1) p[2] = 0.004;
-    std::vector<Body> bodies{ground(), body_of(*hull_part(points), 1, {0})};
-    flatten_feet(bodies, 0.01);
-    std::size_t down = 0;
-    for (const Vec3& c : bodies[1].parts[0].corner) down += std::abs(c[2]) < 1e-9;
-    EXPECT_EQ(down, 4u);
 }
 
 }  // namespace
