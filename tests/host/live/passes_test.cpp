@@ -79,7 +79,7 @@ class TwoPasses {
 
 TEST(SlowPasses, TellWhatWasTakenAwayAndPutThere) {
     int told = 0, alarms = 0;
-    constexpr std::uint64_t seed = 3;
+    constexpr std::uint64_t seed = 1;
     scenes::RoomOptions room;
     room.seed = seed;
     const scenes::World world = scenes::furnished_room(room);
