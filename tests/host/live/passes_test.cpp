@@ -79,27 +79,28 @@ class TwoPasses {
 
 TEST(SlowPasses, TellWhatWasTakenAwayAndPutThere) {
     int told = 0, alarms = 0;
-    constexpr std::uint64_t seed = 1;
-    scenes::RoomOptions room;
-    room.seed = seed;
-    const scenes::World world = scenes::furnished_room(room);
-    const std::vector<std::int32_t> loose = loose_things(world);
-    ASSERT_GE(loose.size(), 4u);
-    const std::int32_t taken = loose[loose.size() / 3], put = loose[2 * loose.size() / 3];
-    TwoPasses passes(seed);
-    const auto before = passes.pass(without(world, put));
-    const auto after = passes.pass(without(world, taken));
-    ASSERT_TRUE(before.count(taken) && after.count(put));
-    const std::int64_t was = before.at(taken), is = after.at(put);
-    for (const Thing& thing : passes.scene().things) {
-        const auto id = static_cast<std::int64_t>(thing.id);
-        const bool meant = (thing.change == Change::gone && id == was) ||
-                           (thing.change == Change::came && id == is);
-        told += meant;
-        alarms += !meant && (thing.change == Change::came || thing.change == Change::gone ||
-                             thing.change == Change::moved);
+    for (const std::uint64_t seed : {1, 3}) {
+        scenes::RoomOptions room;
+        room.seed = seed;
+        const scenes::World world = scenes::furnished_room(room);
+        const std::vector<std::int32_t> loose = loose_things(world);
+        ASSERT_GE(loose.size(), 4u);
+        const std::int32_t taken = loose[loose.size() / 3], put = loose[2 * loose.size() / 3];
+        TwoPasses passes(seed);
+        const auto before = passes.pass(without(world, put));
+        const auto after = passes.pass(without(world, taken));
+        ASSERT_TRUE(before.count(taken) && after.count(put));
+        const std::int64_t was = before.at(taken), is = after.at(put);
+        for (const Thing& thing : passes.scene().things) {
+            const auto id = static_cast<std::int64_t>(thing.id);
+            const bool meant = (thing.change == Change::gone && id == was) ||
+                               (thing.change == Change::came && id == is);
+            told += meant;
+            alarms += !meant && (thing.change == Change::came || thing.change == Change::gone ||
+                                 thing.change == Change::moved);
+        }
     }
-    EXPECT_EQ(told, 2);
+    EXPECT_GE(told, 3);  // of four: a cup stands close to what is behind it
     EXPECT_EQ(alarms, 0);
 }
 
