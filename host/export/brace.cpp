@@ -283,12 +283,17 @@ bool set_on_feet(std::vector<Body>& bodies, const std::vector<bool>& stands, con
     return holds;
 }
 
+// Whether parts come so close to one another.
+bool within(const ConvexPart& a, const ConvexPart& b, double distance_m) {
+    return near(a, b, distance_m) && apart(a, b).gap_m <= distance_m;
+}
+
 // Whether it touches something fixed beside it.
 bool leans_on_fixed(const std::vector<Body>& bodies, const Body& body, double within_m) {
     return any_near(
         bodies, box_around(body.parts), within_m, [&](const Body& other, const ConvexPart& stays) {
             return other.fixed && std::ranges::any_of(body.parts, [&](const ConvexPart& part) {
-                       return near(part, stays, within_m) && apart(stays, part).gap_m <= within_m;
+                       return within(stays, part, within_m);
                    });
         });
 }
@@ -310,37 +315,38 @@ std::size_t beside(const std::vector<Body>& bodies, const std::vector<bool>& sta
     for (std::size_t n = 0; n < bodies.size(); ++n) {
         if (n == of || !stands[n]) continue;
         for (const ConvexPart& part : bodies[n].parts)
-            if (near(part, strut, within_m) && apart(part, strut).gap_m <= within_m) return n;
+            if (within(part, strut, within_m)) return n;
     }
     return bodies.size();
 }
 
 // Lets what carries a body go on under low corners of it, by no more than what surfaces are known
-// to. Whether the body stands then.
-bool add_ledges(std::vector<Body>& bodies, const std::vector<bool>& stands, const Weights& weights,
-                std::size_t n, double half_m) {
+// to: where posts of it lie. Whether the body, which has such a footing, stands then.
+bool add_ledges(std::vector<Body>& bodies, const std::vector<bool>& stands, std::size_t n,
+                const std::vector<Point2>& footing, const Weights& weights,
+                const std::vector<Strut>& posts, double half_m) {
     std::vector<Strut> ledges;
-    for (Strut& post : posts_of(bodies, bodies[n], half_m)) {
-        post.on = beside(bodies, stands, n, post.part, 4 * half_m);
-        if (post.on == bodies.size()) continue;
-        if (bodies[post.on].fixed || !meets(bodies, post.part, bodies[post.on]))
-            ledges.push_back(std::move(post));
+    for (const Strut& post : posts) {
+        const std::size_t on = beside(bodies, stands, n, post.part, 4 * half_m);
+        if (on == bodies.size()) continue;
+        if (!bodies[on].fixed && meets(bodies, post.part, bodies[on])) continue;
+        ledges.push_back(post);
+        ledges.back().on = on;
     }
-    std::vector<Strut> taken = enough(footing_of(bodies, stands, bodies[n]), weights,
-                                      std::move(ledges), firm_share * bodies[n].firm_m);
+    std::vector<Strut> taken =
+        enough(footing, weights, std::move(ledges), firm_share * bodies[n].firm_m);
     for (Strut& ledge : taken) bodies[ledge.on].parts.push_back(std::move(ledge.part));
     return !taken.empty();
 }
 
-// Puts a body on a fixed pad, which together with a footing that it has makes it stand firmly:
-// slabs under low corners of it. False where none do.
+// Puts a body on a fixed pad, which together with a footing that it has makes it stand firmly: of
+// its posts. False where none do.
 bool pad_up(std::vector<Body>& bodies, std::size_t n, const std::vector<Point2>& footing,
-            const Weights& weights, double half_m) {
+            const Weights& weights, std::vector<Strut> posts) {
     Body& body = bodies[n];
     Body pad;
     pad.fixed = true;
-    for (Strut& post :
-         enough(footing, weights, posts_of(bodies, body, half_m), firm_share * body.firm_m))
+    for (Strut& post : enough(footing, weights, std::move(posts), firm_share * body.firm_m))
         pad.parts.push_back(std::move(post.part));
     if (pad.parts.empty()) return false;
     body.on_pad = true;
@@ -359,11 +365,12 @@ void brace(std::vector<Body>& bodies, double thick_m) {
         // Of what falls by itself nothing is held up.
         if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
         stands[n] = true;
-        if (set_on_feet(bodies, stands, weights[n], n, thick_m / 2) ||
-            add_ledges(bodies, stands, weights[n], n, thick_m / 2))
-            continue;
+        if (set_on_feet(bodies, stands, weights[n], n, thick_m / 2)) continue;
+        const std::vector<Point2> footing = footing_of(bodies, stands, bodies[n]);
+        std::vector<Strut> posts = posts_of(bodies, bodies[n], thick_m / 2);
+        if (add_ledges(bodies, stands, n, footing, weights[n], posts, thick_m / 2)) continue;
         if ((near_below(bodies, bodies[n]) || !leans_on_fixed(bodies, bodies[n], thick_m)) &&
-            pad_up(bodies, n, footing_of(bodies, stands, bodies[n]), weights[n], thick_m / 2)) {
+            pad_up(bodies, n, footing, weights[n], std::move(posts))) {
             stands.push_back(true);
             continue;
         }
@@ -374,7 +381,7 @@ void brace(std::vector<Body>& bodies, double thick_m) {
 bool put_on_pad(std::vector<Body>& bodies, std::size_t body, double thick_m) {
     const std::vector<bool> all(bodies.size(), true);
     return pad_up(bodies, body, footing_of(bodies, all, bodies[body]), weights_of(bodies)[body],
-                  thick_m / 2);
+                  posts_of(bodies, bodies[body], thick_m / 2));
 }
 
 }  // namespace topple::exports

@@ -2,7 +2,6 @@
 #include "export/stand.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "core/vectors.h"
@@ -14,19 +13,21 @@ namespace {
 
 constexpr double level_cosine = 0.9;  // of a side that carries
 
-// Calls use(part of the body, part below it, how they lie) for all that come within a distance of
-// one another, one over the other.
-template <class Use>
-void each_footing(std::vector<Body>& bodies, Body& body, double within_m, const Use& use) {
+// The least gap between a body and what carries it, of parts that lie one over the other and no
+// further apart than that; infinity without any.
+double gap_m(const std::vector<Body>& bodies, const Body& body, double within_m) {
+    double gap = physics::infinity;
     for (const std::int32_t carrier : body.carried_by) {
         for (const ConvexPart& below : bodies[carrier].parts) {
-            for (ConvexPart& part : body.parts) {
+            for (const ConvexPart& part : body.parts) {
                 if (!near(part, below, within_m)) continue;
                 const Apart lie = apart(below, part);
-                if (lie.normal[2] >= level_cosine && lie.gap_m <= within_m) use(part, below, lie);
+                if (lie.normal[2] >= level_cosine && lie.gap_m <= within_m)
+                    gap = std::min(gap, lie.gap_m);
             }
         }
     }
+    return gap;
 }
 
 void move(Body& body, const Vec3& by) {
@@ -48,11 +49,7 @@ void settle(std::vector<Body>& bodies, double most_m) {
     for (const std::size_t n : by_level(bodies)) {
         Body& body = bodies[n];
         if (body.fixed) continue;
-        double gap = physics::infinity;
-        each_footing(bodies, body, most_m,
-                     [&](const ConvexPart&, const ConvexPart&, const Apart& lie) {
-                         gap = std::min(gap, lie.gap_m);
-                     });
+        const double gap = gap_m(bodies, body, most_m);
         if (gap > 0 && gap < physics::infinity) move(body, {0, 0, -gap});
     }
 }
