@@ -71,9 +71,10 @@ void replace_file(const fs::path& file, std::string_view text) {
 }
 
 ExportFolder::ExportFolder(const fs::path& folder, const std::string& format,
-                           const std::string& top)
-    : folder_(folder), beside_(name_beside(format)), top_(top) {
-    check_ours(folder_ / top_);
+                           const std::string& top, const std::string& variant)
+    : folder_(folder), beside_(name_beside(format)), loaded_{top} {
+    if (!variant.empty()) loaded_.push_back(variant);
+    for (const std::string& name : loaded_) check_ours(folder_ / name);
     check_folder_ours(folder_ / beside_);
     make_folder(folder_);
     staging_.emplace(folder_);
@@ -104,19 +105,21 @@ void ExportFolder::add_parts(std::span<const NamedBody> bodies) {
                 add(each.name + ".obj", part_obj(*each.part, named.body->center_m));
 }
 
-void ExportFolder::commit(std::string_view top_text) {
-    io::write_file(staging_->path() / top_, top_text);
+void ExportFolder::commit(std::string_view top_text, std::string_view variant_text) {
+    io::write_file(staging_->path() / loaded_.front(), top_text);
+    if (loaded_.size() > 1) io::write_file(staging_->path() / loaded_.back(), variant_text);
     // The earlier one goes as a whole, before anything of it changes: its own folder into the
     // staging folder, of which it goes for good.
-    check_ours(folder_ / top_);
+    for (const std::string& name : loaded_) check_ours(folder_ / name);
     check_folder_ours(folder_ / beside_);
     const fs::path earlier = staging_->path() / "earlier", files = staging_->path() / beside_;
     std::error_code error;
-    if (::unlink((folder_ / top_).c_str()) != 0 && errno != ENOENT)
-        io::fail(folder_ / top_, std::string("can't be replaced: ") + std::strerror(errno));
+    for (const std::string& name : loaded_)
+        if (::unlink((folder_ / name).c_str()) != 0 && errno != ENOENT)
+            io::fail(folder_ / name, std::string("can't be replaced: ") + std::strerror(errno));
     if (fs::exists(folder_ / beside_, error)) put(folder_ / beside_, earlier);
     if (!fs::is_empty(files, error)) put(files, folder_ / beside_);
-    put(staging_->path() / top_, folder_ / top_);
+    for (const std::string& name : loaded_) put(staging_->path() / name, folder_ / name);
 }
 
 }  // namespace topple::exports

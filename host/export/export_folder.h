@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "export/named_bodies.h"
 #include "io/staging_folder.h"
@@ -33,9 +34,10 @@ void replace_file(const std::filesystem::path& file, std::string_view text);
 // export. An earlier export is replaced; files of others are not. Errors are Error(input).
 class ExportFolder {
   public:
-    // folder: made where it is missing.
+    // folder: made where it is missing. variant: another file that may be loaded, which refers to
+    // `top`; "": none.
     ExportFolder(const std::filesystem::path& folder, const std::string& format,
-                 const std::string& top);
+                 const std::string& top, const std::string& variant = "");
 
     // The name of the folder for what is referred to.
     const std::string& beside() const { return beside_; }
@@ -47,11 +49,12 @@ class ExportFolder {
     // name.obj of each part that is no simple shape.
     void add_parts(std::span<const NamedBody> bodies);
 
-    void commit(std::string_view top_text);
+    void commit(std::string_view top_text, std::string_view variant_text = {});
 
   private:
     std::filesystem::path folder_;
-    std::string beside_, top_;
+    std::string beside_;
+    std::vector<std::string> loaded_;  // the variant last: where that is, what it refers to is
     std::optional<io::StagingFolder> staging_;
 };
 

@@ -95,11 +95,27 @@ std::string defaults(const SimScene& scene, bool visuals) {
     return out;
 }
 
+// The same scene, of which nothing is reckoned where all is at rest. Older versions of MuJoCo don't
+// know the flag, so that it has a file of its own.
+std::string asleep() {
+    std::string out(xml_mark);
+    out +=
+        "<!-- For MuJoCo 3.4 or later: what is at rest sleeps until something awake touches it. "
+        "-->\n"
+        "<mujoco model=\"scan\">\n"
+        "  <include file=\"scene.xml\"/>\n"
+        "  <option>\n"
+        "    <flag sleep=\"enable\"/>\n"
+        "  </option>\n"
+        "</mujoco>\n";
+    return out;
+}
+
 }  // namespace
 
 void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
     const std::vector<NamedBody> bodies = named_bodies(scene);
-    ExportFolder files(folder, "mjcf", "scene.xml");
+    ExportFolder files(folder, "mjcf", "scene.xml", "scene_asleep.xml");
     const bool visuals = files.add_visuals(bodies);
     std::string assets, world;
     for (const NamedBody& body : bodies) add_body(body, assets, world);
@@ -122,7 +138,7 @@ void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
         append(out, "    <texture name=\"colours\" type=\"2d\"", attribute("file", colour_file),
                "/>\n    <material name=\"colours\" texture=\"colours\" specular=\"0\"/>\n");
     append(out, assets, "  </asset>\n  <worldbody>\n", world, "  </worldbody>\n</mujoco>\n");
-    files.commit(out);
+    files.commit(out, asleep());
 }
 
 }  // namespace topple::exports

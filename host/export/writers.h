@@ -10,7 +10,8 @@
 // nothing. An earlier export is replaced, see ExportFolder. Throw Error(input).
 namespace topple::exports {
 
-// MuJoCo's format, as scene.xml in a folder: a geom for each part, and one for what is seen.
+// MuJoCo's format, as scene.xml in a folder: a geom for each part, and one for what is seen. With
+// scene_asleep.xml, in which what is at rest sleeps.
 void write_mjcf(const std::filesystem::path& folder, const SimScene& scene);
 
 // As scene.urdf in a folder: one tree, of which each body is a link at a joint to `world`, floating

@@ -71,7 +71,23 @@ def rests(expected, model, data, file):
     assert not any(warning.number for warning in data.warning), file
 
 
+def sleeps(expected):
+    """All that is free goes to sleep where it stands, and what is pushed wakes up."""
+    model = mujoco.MjModel.from_xml_path(expected.path('scene_asleep.xml'))
+    data = mujoco.MjData(model)
+    before = data.qpos.copy()
+    while data.time < 1:
+        mujoco.mj_step(model, data)
+    assert data.ntree_awake == 0 and data.ncon == 0, f'{data.ntree_awake} of {model.ntree} are awake'
+    near('places of what sleeps', data.qpos, before, 0.003)
+    joint = model.body(next(iter(expected.free()))).jntadr[0]
+    data.qvel[model.jnt_dofadr[joint]] = 0.5
+    mujoco.mj_step(model, data)
+    assert data.ntree_awake > 0, 'nothing woke up'
+
+
 expected = Expected(sys.argv[1])
 check(expected, 'scene.xml')
 check(expected, 'scene.urdf')
+sleeps(expected)
 print('mujoco has read all')

@@ -18,8 +18,8 @@
 namespace topple {
 
 struct ExportOptions {
-    // What to write, by format, one at least: the folders for scene.xml (MuJoCo's MJCF), scene.urdf
-    // and scene.sdf, and the file, NAME.usda.
+    // What to write, by format, one at least: the folders for scene.xml (MuJoCo's MJCF, with
+    // scene_asleep.xml beside it), scene.urdf and scene.sdf, and the file, NAME.usda.
     std::filesystem::path mjcf, urdf, sdf, usd;
     bool visuals = true;   // what bodies look like, in the scan's colours, beside what collides
     unsigned threads = 0;  // 0: all cores; the result is the same

@@ -132,8 +132,11 @@ TEST_F(ExportScene, AnothersFilesStay) {
     put_output(result_.scene);
     write("a/scene.xml", "<mujoco/>");
     write("b/bodies.json", "{}");
+    write("e/scene_asleep.xml", "<mujoco/>");
     EXPECT_NE(refused(to("a"), ErrorKind::input).find("a/scene.xml: exists"), std::string::npos);
     EXPECT_NE(refused(to("b"), ErrorKind::input).find("b/bodies.json: exists"), std::string::npos);
+    EXPECT_NE(refused(to("e"), ErrorKind::input).find("e/scene_asleep.xml: exists"),
+              std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(path("b/scene.xml")));
     // A scan's own folder.
     write("scan/intrinsics.json", "{}");
