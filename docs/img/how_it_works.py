@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# how_it_works.py PARSED DIR: the pictures of docs/how-it-works.md, from an output folder of
+# how_it_works.py PARSED DIR: the pictures of docs/how-it-works.md and of fields in docs/output.md, from an output folder of
 #   topple generate office --kind office --seed 4
-#   topple parse office -o PARSED --png --octomap
+#   topple parse office -o PARSED --png --octomap --fields
 # It needs PyPI's matplotlib and Pillow.
 import argparse
 import json
@@ -247,6 +247,7 @@ def views(parsed, out):
     for name in ('objects', 'human', 'risk'):
         image = Image.open(os.path.join(parsed, f'view-{name}.png')).convert('RGB')
         save(image.resize((900, 562), Image.Resampling.LANCZOS), os.path.join(out, f'how-{name}.png'))
+    save(Image.open(os.path.join(parsed, 'field-human.png')).convert('RGB'), os.path.join(out, 'field-human.png'))
 
 
 def main():

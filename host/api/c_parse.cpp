@@ -66,6 +66,7 @@ ParseOptions parse_options(const topple_options& o) {
     if (o.cache_file) to.cache_file = o.cache_file;
     to.coordinates = !o.without_coordinates;
     to.isolate = !o.without_isolation;
+    to.space_fields = o.space_fields != 0;
     if (o.progress || o.log) {
         to.progress = [&o, last = std::string()](const std::string& stage, double done) mutable {
             if (o.progress) o.progress(stage.c_str(), done, o.user);

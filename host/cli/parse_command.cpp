@@ -360,6 +360,8 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
         "Parse any cloud in blocks of 5 m, as those of over 4 million points are, so\n"
         "that it may be larger than memory; the blocks of a tile of this edge in metres\n"
         "are read and handed out together (default: one by one; the result is the same)");
+    app.add_flag("--fields", a->options.space_fields,
+                 "Write how people and wind pass through space, too: fields.vdb, field-*.png");
     app.add_flag("--octomap", a->output.octomap,
                  "Write what was seen to be free and occupied as an OctoMap, too: map.bt");
     add_export_options(app, a->exported);

@@ -57,12 +57,13 @@ ParseResult judge_parts(device::Device& device, FoundParts found, const ParseOpt
         solids = objects.taken->solids;
     }
     clear_lost_labels(*solids, *parts.solids, *found.voxels);
-    const SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
+    SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
     result.voxels = found.voxels;
     result.solids = parts.solids;
     result.image_width = found.image_width;
     result.image_height = found.image_height;
     stage("assembly", [&] {
+        result.space_fields = take_space_fields(parts, safety);
         assemble_objects(parts, objects, safety, scene);
         assemble_points(std::move(found), objects, safety, scene);
     });

@@ -13,6 +13,7 @@
 #include "io/output_folder.h"
 #include "io/text.h"
 #include "points/formats/octomap.h"
+#include "report/field_slices.h"
 #include "report/pictures.h"
 #include "report/report.h"
 #include "result/landscapes_json.h"
@@ -25,6 +26,7 @@
 #include "topple/parse.h"
 #include "topple/session.h"
 #include "vdb/voxel_scene.h"
+#include "vdb/write_space_fields.h"
 
 namespace topple {
 namespace {
@@ -115,6 +117,11 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
     out.emplace_back([=] { voxels.get()->write(folder / "volume.vdb"); });
     out.emplace_back([=, &result, &poll] { write_points(folder / "points.ply", result, poll); });
     if (options.pictures) out.emplace_back([=, &scene] { report::write_pictures(folder, scene); });
+    if (!result.space_fields.empty())
+        out.emplace_back([=, &result] {
+            vdb::write_space_fields(folder / "fields.vdb", result.space_fields);
+            report::write_field_slices(folder, result.space_fields, result.scene);
+        });
     out.emplace_back([=, &scene] { io::write_solid_ply(folder / "solid.ply", scene.solid); });
     if (result.solids)
         out.emplace_back([=, &result] { io::write_solids(folder / "solids.bin", *result.solids); });

@@ -143,6 +143,7 @@ void bind_parse(py::module_& module) {
         .def_readwrite("disturbances", &ParseOptions::disturbances)
         .def_readwrite("people", &ParseOptions::people)
         .def_readwrite("isolate", &ParseOptions::isolate)
+        .def_readwrite("space_fields", &ParseOptions::space_fields)
         .def_readwrite("seed", &ParseOptions::seed)
         .def_readwrite("max_memory_bytes", &ParseOptions::max_memory_bytes)
         .def_readwrite("walks", &ParseOptions::walks)

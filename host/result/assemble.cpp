@@ -272,24 +272,18 @@ void note_crowded_objects(Scene& scene) {
 }
 
 // What was not reckoned with; some comes in only where something is open.
-void note_left_out(const SolidParts& parts, const SafetyStage& safety, Scene& scene) {
+void note_left_out(const SafetyStage& safety, Scene& scene) {
     if (safety.disturbances.empty()) {
         scene.notes.emplace_back(
             "No disturbance was asked for: there are no risks, and no object has an unsafety or a "
             "category. Barriers, and what pushes and blows do, hold.");
         return;
     }
-    const auto roles = parts.solids->primitives();
-    bool ceiling = false;
-    for (std::size_t p = 0; p < roles; ++p)
-        ceiling = ceiling || parts.solids->role(static_cast<std::int32_t>(p)) == Role::ceiling;
     for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
         const bool reckoned = std::ranges::any_of(
             safety.disturbances, [&](const auto& d) { return d.name == kind->name; });
-        const char* note = reckoned && ceiling   ? kind->below_ceiling
-                           : reckoned || ceiling ? nullptr
-                                                 : kind->left_out_below_none;
-        if (note != nullptr) scene.notes.emplace_back(note);
+        if (!reckoned && !safety.below_ceiling && kind->left_out_below_none != nullptr)
+            scene.notes.emplace_back(kind->left_out_below_none);
     }
 }
 
@@ -392,13 +386,30 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     const std::string possible = possible_things_note(scene.possible_things);
     if (!possible.empty()) scene.notes.push_back(possible);
     note_uncertain_barriers(scene);
-    note_left_out(parts, safety, scene);
+    note_left_out(safety, scene);
     note_short_hazard(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(objects, to_input, scene);
     predict_falls(objects, safety, to_input, scene);
     write_reasons(parts, objects, safety.landings, scene);
     write_advice(safety.advice, scene);
+}
+
+std::map<std::string, SpaceField> take_space_fields(const SolidParts& parts, SafetyStage& safety) {
+    const ToInput to_input(parts.frame);
+    std::map<std::string, SpaceField> out;
+    for (safety::Disturbance& d : safety.disturbances) {
+        if (!d.space) continue;
+        SpaceField& field = out[d.name] = std::move(*d.space);
+        d.space.reset();
+        field.corner_m = to_input.place(field.corner_m);
+        for (Vec3& along : field.along_m) along = to_input.way(along);
+        for (auto& v : field.velocity_m_s) {
+            const Vec3 way = to_input.way({v[0], v[1], v[2]});
+            for (std::size_t a = 0; a < 3; ++a) v[a] = static_cast<float>(way[a]);
+        }
+    }
+    return out;
 }
 
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels) {

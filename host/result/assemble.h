@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "objects/found_parts.h"
@@ -22,6 +23,9 @@ std::string light_density_note(double density_kg_m3);
 // frame.
 void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
                       const SafetyStage& safety, Scene& scene);
+
+// The fields over space, by disturbance, in the input's frame; they are taken out of `safety`.
+std::map<std::string, SpaceField> take_space_fields(const SolidParts& parts, SafetyStage& safety);
 
 // Each field's strength at the solid voxels it acts on, for volume.vdb.
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels);

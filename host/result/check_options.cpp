@@ -88,17 +88,4 @@ void check_options(const ParseOptions& o) {
     }
 }
 
-std::vector<std::string> known_disturbances() {
-    std::vector<std::string> names;
-    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
-        names.emplace_back(kind->name);
-    return names;
-}
-
-std::vector<std::string> known_people() {
-    std::vector<std::string> names;
-    for (const safety::PersonKind& kind : safety::person_kinds()) names.emplace_back(kind.name);
-    return names;
-}
-
 }  // namespace topple

@@ -50,3 +50,14 @@ std::vector<const DisturbanceKind*> acting_kinds(const ParseOptions& options) {
 }
 
 }  // namespace topple::safety
+
+namespace topple {
+
+std::vector<std::string> known_disturbances() {
+    std::vector<std::string> names;
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
+        names.emplace_back(kind->name);
+    return names;
+}
+
+}  // namespace topple

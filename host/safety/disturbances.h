@@ -57,8 +57,8 @@ struct DisturbanceKind {
     // Whether it is in this run, if it was asked for; null: always.
     bool (*acts)(const ParseOptions& options) = nullptr;
     bool everyday = false;                      // such events have happened before the scan
-    const char* below_ceiling = nullptr;        // what to note where the scan has a ceiling
-    const char* left_out_below_none = nullptr;  // and where it has none, and this is left out
+    // What to note where this is left out and the scan has no ceiling.
+    const char* left_out_below_none = nullptr;
 };
 
 // In the order in which they are reckoned and shown.

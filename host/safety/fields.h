@@ -19,6 +19,7 @@
 #include "topple/kernels/device.h"
 #include "topple/motion.h"
 #include "topple/scene.h"
+#include "topple/space_field.h"
 
 // Disturbance fields (paper, 5.1) and the risk they bring (Eq. 7). Grid frame: metres, z up.
 namespace topple::safety {
@@ -55,6 +56,7 @@ struct Surroundings {
     const SolidCells* cells = nullptr;
     std::vector<std::int32_t> object;      // of each cell
     std::vector<bool> is_floor_primitive;  // by primitive: horizontal, lowest, walkable
+    bool below_ceiling = false;            // most of a ceiling was scanned
     // By primitive, for where the centres of mass are; empty: the same everywhere.
     std::vector<double> density_kg_m3 = {};
 };
@@ -99,6 +101,7 @@ struct Disturbance {
     std::vector<std::vector<Hold>> holds;       // by object, of who reaches for it
     std::vector<double> gust_m_s;               // of wind from all sides: as tipping_gusts has it
     std::vector<std::string> notes;             // e.g. no walkable floor was found
+    std::optional<SpaceField> space;            // grid frame; where it was asked for
 
     // By object: its work if its barrier, curve and edges were others, as where it stood elsewhere,
     // just as exposed. Empty where exposure is another there: then risk_at tells.

@@ -100,3 +100,13 @@ HumanOptions walker(const PersonKind& kind, const ParseOptions& options) {
 }
 
 }  // namespace topple::safety
+
+namespace topple {
+
+std::vector<std::string> known_people() {
+    std::vector<std::string> names;
+    for (const safety::PersonKind& kind : safety::person_kinds()) names.emplace_back(kind.name);
+    return names;
+}
+
+}  // namespace topple

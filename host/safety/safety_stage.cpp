@@ -15,6 +15,17 @@
 namespace topple {
 namespace {
 
+// Whether as much of a ceiling was scanned as half of the floor: pieces of one are lintels, too.
+bool is_below_ceiling(const SolidScene& solids) {
+    std::size_t floor = 0, ceiling = 0;
+    for (const std::int32_t p : solids.cells().primitive) {
+        if (p < 0) continue;
+        floor += solids.role(p) == Role::floor;
+        ceiling += solids.role(p) == Role::ceiling;
+    }
+    return ceiling > 0 && 2 * ceiling >= floor;
+}
+
 safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& objects) {
     safety::Surroundings s;
     const SolidScene& solids = *parts.solids;
@@ -23,6 +34,7 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
     for (const std::int32_t p : solids.cells().primitive) s.object.push_back(object_of(p));
     for (std::size_t p = 0; p < solids.primitives(); ++p)
         s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
+    s.below_ceiling = is_below_ceiling(solids);
     for (const physics::MassProperties& b : objects.bodies)
         s.density_kg_m3.push_back(b.density_kg_m3());
     return s;
@@ -140,6 +152,7 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     // `all` goes on with what may be a thing.
     const std::span<const safety::RiskObject> at_risk(all.data(), objects.objects.size());
     const safety::Surroundings around = surroundings(parts, objects);
+    out.below_ceiling = around.below_ceiling;
     for (const safety::DisturbanceKind* kind : safety::acting_kinds(options)) {
         out.disturbances.push_back(stage(std::string("field ") + kind->name, [&] {
             return kind->field(device, around, all, options);

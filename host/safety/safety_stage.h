@@ -29,6 +29,7 @@ struct SafetyStage {
     std::vector<std::vector<safety::Risk>> possible_risk;
     std::vector<safety::CategoryEnds> possible_category;
     std::vector<double> gust_m_s;  // by object: that tips it; NaN: none does
+    bool below_ceiling = false;    // most of a ceiling was scanned
 };
 
 // The objects as the fields and the risk see them.

@@ -261,6 +261,7 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
     if (objects.taken) tiled->take_away(*objects.taken);
     SafetyStage safety = assess_safety(device, parts, objects, options, stage);
     stage("assembly", [&] {
+        result.space_fields = take_space_fields(parts, safety);
         assemble_objects(parts, objects, safety, scene);
         scene.solid = vdb::solid_voxels({layout.voxel_m, layout.frame.axes}, parts.solids->cells(),
                                         objects.object_of_primitive);

@@ -64,9 +64,13 @@ TEST_F(Output, beyond_the_limit_of_a_file) {
 TEST_F(Output, is_the_same_again) {
     put_plane("plane.xyz");
     for (const char* out : {"a", "b"})
-        ASSERT_EQ(run({"parse", "plane.xyz", "-o", out, "--quiet", "--glb", "--octomap"}).code, 0);
+        ASSERT_EQ(run({"parse", "plane.xyz", "-o", out, "--quiet", "--glb", "--octomap",
+                       "--fields", "--threads", out[0] == 'a' ? "1" : "2"})
+                      .code,
+                  0);
     for (const std::string name :
-         {"points.ply", "solid.ply", "volume.vdb", "objects.glb", "map.bt", "landscapes.json"})
+         {"points.ply", "solid.ply", "volume.vdb", "objects.glb", "map.bt", "landscapes.json",
+          "fields.vdb", "field-wind.png"})
         EXPECT_TRUE(bytes_of_file(in("a/" + name)) == bytes_of_file(in("b/" + name))) << name;
 }
 

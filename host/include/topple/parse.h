@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@
 #include "topple/materials.h"
 #include "topple/motion.h"
 #include "topple/scene.h"
+#include "topple/space_field.h"
 
 namespace topple::vdb {
 class VoxelScene;
@@ -75,6 +77,7 @@ struct ParseOptions {
     // How often the ground shakes there (read_hazard_curve), for how often each object falls.
     std::optional<HazardCurve> hazard;
     double tolerable_J = 0.1;  // risk per event below which nothing needs to be done
+    bool space_fields = false;  // ParseResult::space_fields is wanted
     // Meshes, OctoMaps and OpenVDB files are read by libraries of others. They read in a process of
     // their own, the program topple-reader, with limits of memory and time by the file's size: what
     // crashes there is an Error here. Without, they read in this process, without limits, which is
@@ -133,6 +136,9 @@ struct ParseResult {
     std::shared_ptr<const TiledResult> tiled;
     // The solids, finer than the voxels; null for a cloud that was parsed in blocks.
     std::shared_ptr<const SolidScene> solids;
+    // By disturbance, those of people and of wind over space; empty unless
+    // ParseOptions::space_fields asked for them.
+    std::map<std::string, SpaceField> space_fields;
     // The size of the depth image that an organised cloud in a file is: scene.points are its
     // pixels, or those that ScenePoints::index says, row by row. 0: it is none.
     std::uint32_t image_width = 0, image_height = 0;

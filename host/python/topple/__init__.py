@@ -346,7 +346,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, motion_unit=None,
           motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, stability_level=0.0, grouping_time_s=None, materials=None, corrections=None, cache_file=None, normals=None,
           name=None, viewpoint=None, colours=None, frames=None, camera_to_world=None, intrinsics=None, colour_intrinsics=None,
-          tile_m=0.0, isolate=True, progress=None, cancelled=None):
+          tile_m=0.0, space_fields=False, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
     source: a path, as the command line takes it, or of what topple.formats converts (docs/formats.md: .laz, .e57, bags of ROS,
@@ -384,12 +384,13 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     refused. tile_m: 5 or more has a cloud in a file parsed in blocks (docs/scale.md), of which as many are read together as lie in a tile
     of that edge, metres. name: of points or frames in memory, what messages, the report and Result.source call them; "points"
     or "frames" without.
+    space_fields=True: Result.write() writes fields.vdb, too, how people and wind pass through space (docs/output.md).
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
     KeyboardInterrupt. isolate=False: meshes, OctoMaps and OpenVDB files are read in this process, not in one of
     its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
     are those of `topple parse --help-all`.
     """
-    given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'people': people, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
+    given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'people': people, 'seed': seed, 'isolate': isolate, 'space_fields': space_fields, 'max_memory_bytes': max_memory_bytes,
              'density_kg_m3': density_kg_m3, 'friction': friction, 'contents_kg_m3': contents_kg_m3, 'walks': walks,
              'wind_m_s': wind_m_s, 'wind_from_deg': wind_from_deg, 'pga_m_s2': pga_m_s2,
              'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'stability_level': stability_level, 'grouping_time_s': grouping_time_s, 'tile_m': tile_m}

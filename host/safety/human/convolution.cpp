@@ -257,39 +257,67 @@ void Convolution::collect_strikes(Tile& tile, std::span<Strikes> strikes) const 
     }
 }
 
-void Convolution::offer_arrows(const Tile& tile, double floor_m, ArrowSample& arrows) const {
-    const std::int64_t r = footprint_.radius;
-    std::vector<std::array<float, 3>> sum(std::size_t{band_count} * tile.cells, {0, 0, 0});
+std::vector<Passing> Convolution::passing(const Tile& tile) const {
+    std::vector<Passing> sum(std::size_t{band_count} * tile.cells);
     for (std::size_t n = 0; n < secondary_.layers.size(); ++n) {
         const Bands bands = secondary_.layers[n].bands;
         const double speed = secondary_.layers[n].speed_m_s;
+        const auto energy = static_cast<float>(secondary_.energy_J[secondary_.layers[n].level]);
         for (unsigned d = 0; d < direction_count; ++d) {
             const auto [dx, dy] = direction(d);
             const auto vx = static_cast<float>(dx * speed), vy = static_cast<float>(dy * speed);
             for (unsigned b = 0; b < bands.count; ++b) {
                 const float* density = &tile.density[tile.output_first[n] +
                                                      std::size_t{d * bands.count + b} * tile.cells];
-                auto* to = &sum[std::size_t{bands.first + b} * tile.cells];
+                Passing* to = &sum[std::size_t{bands.first + b} * tile.cells];
                 for (std::uint32_t c = 0; c < tile.cells; ++c) {
-                    to[c][0] += density[c] * vx;
-                    to[c][1] += density[c] * vy;
-                    to[c][2] += density[c];
+                    to[c].velocity[0] += density[c] * vx;
+                    to[c].velocity[1] += density[c] * vy;
+                    to[c].passes += density[c];
+                    to[c].energy += density[c] * energy;
                 }
             }
         }
     }
+    return sum;
+}
+
+template <class Visit>
+void Convolution::each_place(const Tile& tile, const Visit& visit) const {
+    const std::int64_t r = footprint_.radius;
     for (std::uint32_t c = 0; c < tile.cells; ++c) {
         const std::int64_t at = tile.starts[c / block] + c % block;
         const Place place{at % width_ - r, at / width_ - r - 1};
-        if (!map_.inside(place)) continue;
+        if (map_.inside(place)) visit(place, c);
+    }
+}
+
+void Convolution::offer_arrows(const Tile& tile, std::span<const Passing> passing, double floor_m,
+                               ArrowSample& arrows) const {
+    each_place(tile, [&](const Place& place, std::uint32_t c) {
         const auto [x, y] = map_.center(place);
         for (unsigned b = 0; b < band_count; ++b) {
-            const auto& s = sum[std::size_t{b} * tile.cells + c];
-            if (s[2] <= 0) continue;
+            const Passing& s = passing[std::size_t{b} * tile.cells + c];
+            if (s.passes <= 0) continue;
             arrows.offer({x, y, floor_m + (b + 0.5) * band_m_},
-                         {double{s[0] / s[2]}, double{s[1] / s[2]}, 0}, double{s[2]});
+                         {double{s.velocity[0] / s.passes}, double{s.velocity[1] / s.passes}, 0},
+                         double{s.passes});
         }
-    }
+    });
+}
+
+void Convolution::add_space(const Tile& tile, std::span<const Passing> passing, double floor_m,
+                            SpaceSums& space) const {
+    const double low = (floor_m - space.corner_m()[2]) / space.cell_m();
+    const double high = low + band_count * band_m_ / space.cell_m();
+    each_place(tile, [&](const Place& place, std::uint32_t c) {
+        for (auto k = static_cast<std::int32_t>(std::ceil(low - 0.5)); k + 0.5 < high; ++k) {
+            const double above_m = (k + 0.5 - low) * space.cell_m();
+            const auto b = std::min(static_cast<unsigned>(above_m / band_m_), band_count - 1);
+            space.add({static_cast<std::int32_t>(place.x), static_cast<std::int32_t>(place.y), k},
+                      passing[std::size_t{b} * tile.cells + c]);
+        }
+    });
 }
 
 template <class Visit>
@@ -333,7 +361,7 @@ void Convolution::sweep(double floor_m, const std::vector<bool>& component,
 
 void Convolution::add_level(double floor_m, const std::vector<bool>& component,
                             std::span<Strikes> strikes, std::span<float> exposure,
-                            ArrowSample& arrows) {
+                            ArrowSample& arrows, SpaceSums& space) {
     std::vector<Target> all;
     Target target;
     for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
@@ -342,7 +370,11 @@ void Convolution::add_level(double floor_m, const std::vector<bool>& component,
     }
     sort_unique(all);
     sweep(floor_m, component, active_blocks(component), all, strikes,
-          [&](const Tile& tile) { offer_arrows(tile, floor_m, arrows); });
+          [&](const Tile& tile) {
+              const std::vector<Passing> all = passing(tile);
+              offer_arrows(tile, all, floor_m, arrows);
+              if (space.made()) add_space(tile, all, floor_m, space);
+          });
     for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
         if (!target_of(v, object_of_cell_[v], floor_m, target)) continue;
         const auto found =

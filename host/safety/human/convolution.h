@@ -13,6 +13,7 @@
 #include "safety/human/secondary_motion.h"
 #include "safety/human/walkable_map.h"
 #include "safety/objects.h"
+#include "safety/space_sums.h"
 #include "topple/kernels/buffer.h"
 
 namespace topple::safety {
@@ -56,9 +57,10 @@ class Convolution {
     double band_m() const { return band_m_; }
 
     // The walks within the given components, whose floor is at floor_m: adds to the objects'
-    // strikes and to the solid cells' exposure, and offers arrows for the report.
+    // strikes, to the solid cells' exposure and to the sums over space, where these are made, and
+    // offers arrows for the report.
     void add_level(double floor_m, const std::vector<bool>& component, std::span<Strikes> strikes,
-                   std::span<float> exposure, ArrowSample& arrows);
+                   std::span<float> exposure, ArrowSample& arrows, SpaceSums& space);
     // The same for objects that stand elsewhere: adds to the strikes of each placement.
     void add_placements(double floor_m, const std::vector<bool>& component,
                         std::span<const std::vector<std::uint32_t>> cells_of_object,
@@ -92,7 +94,16 @@ class Convolution {
     void run(Tile& tile, const device::Buffer<float>& primary,
              const device::Buffer<std::uint32_t>& solid);
     void collect_strikes(Tile& tile, std::span<Strikes> strikes) const;
-    void offer_arrows(const Tile& tile, double floor_m, ArrowSample& arrows) const;
+    // Of all layers and directions, by band and cell of the tile.
+    std::vector<Passing> passing(const Tile& tile) const;
+    // Calls visit(place, cell) for the tile's cells on the map, by their numbers in the tile.
+    template <class Visit>
+    void each_place(const Tile& tile, const Visit& visit) const;
+    void offer_arrows(const Tile& tile, std::span<const Passing> passing, double floor_m,
+                      ArrowSample& arrows) const;
+    // To cells of space as wide as the map's: each takes the band that its middle lies in.
+    void add_space(const Tile& tile, std::span<const Passing> passing, double floor_m,
+                   SpaceSums& space) const;
 
     device::Device& device_;
     const WalkableMap& map_;

@@ -169,9 +169,13 @@ class Walkers {
 
         strikes_.assign(objects_.size(), no_strikes(secondary_));
         ArrowSample arrows;
+        SpaceSums space = options_.over_space ? SpaceSums({map_.x0, map_.y0, 0}, map_.cell_m)
+                                              : SpaceSums();
         for (const Level& level : levels_)
-            convolution_->add_level(level.floor_m, level.component, strikes_, out.exposure, arrows);
+            convolution_->add_level(level.floor_m, level.component, strikes_, out.exposure, arrows,
+                                    space);
         out.samples = arrows.take();
+        if (space.made()) out.space = space.take();
         out.work = work_if(objects_);
         out.strongest.resize(objects_.size());
         for (std::size_t o = 0; o < objects_.size(); ++o) {

@@ -25,6 +25,7 @@ struct HumanOptions {
     // How the bodies of walkers move, each as often as the others; none: as in the table of parts.
     std::vector<std::shared_ptr<const BodyMotion>> motions;
     std::span<const BodyPart> parts = body_parts;
+    bool over_space = false;  // Disturbance::space is wanted
 };
 
 inline constexpr unsigned max_shown_paths = 100;  // walks whose way the report draws

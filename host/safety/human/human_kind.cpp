@@ -29,8 +29,10 @@ const DisturbanceKind& human_kind() {
             [](device::Device& device, const Surroundings& surroundings,
                std::span<const RiskObject> objects, const ParseOptions& options) {
                 std::vector<HumanOptions> kinds;
-                for (const std::string& name : options.people)
+                for (const std::string& name : options.people) {
                     kinds.push_back(walker(person_kind(name), options));
+                    kinds.back().over_space = options.space_fields;
+                }
                 return people_field(device, surroundings, objects, kinds);
             },
         .events =

@@ -4,6 +4,7 @@
 
 #include "safety/human/human_field.h"
 #include "safety/objects.h"
+#include "safety/space_sums.h"
 
 namespace topple::safety {
 namespace {
@@ -50,6 +51,18 @@ Walks mixed_walks(const KindFields& kinds) {
     return out;
 }
 
+// Each counts as often as it comes; their maps, and so their cells, are the same.
+std::optional<SpaceField> mixed_space(const KindFields& kinds) {
+    SpaceSums sums;
+    for (const Disturbance& d : kinds) {
+        if (!d.space) continue;
+        if (!sums.made()) sums = SpaceSums(d.space->corner_m, d.space->along_m[0][0]);
+        sums.add(*d.space, 1.0f / static_cast<float>(kinds.size()));
+    }
+    if (!sums.made()) return std::nullopt;
+    return sums.take();
+}
+
 // Mean risks: as if one of the kinds came at a time.
 std::vector<Risk> mixed_risk(const KindFields& kinds, std::span<const Placement> placements) {
     const auto count = static_cast<double>(kinds.size());
@@ -81,6 +94,7 @@ Disturbance people_field(device::Device& device, const Surroundings& surrounding
     out.work = mixed_work(
         *fields, objects.size(), [](const Disturbance& d) -> const auto& { return d.work; });
     out.exposure.assign(surroundings.object.size(), 0.0f);
+    out.space = mixed_space(*fields);
     out.draws = 0;
     ArrowSample arrows;
     for (Disturbance& d : *fields) {
@@ -100,6 +114,7 @@ Disturbance people_field(device::Device& device, const Surroundings& surrounding
         d.samples = {};
         d.exposure = {};
         d.walks = {};
+        d.space.reset();
     }
     out.samples = arrows.take();
     if (std::ranges::none_of(*fields, [](const Disturbance& d) { return bool{d.work_if}; }))

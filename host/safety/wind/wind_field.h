@@ -22,6 +22,7 @@ struct WindOptions {
     // Where it comes from, degrees from +y towards +x, which is clockwise from north seen from
     // above; none: from each of the 16 directions.
     std::optional<double> from_deg;
+    bool over_space = false;  // Disturbance::space is wanted
 };
 
 // A gale of one speed, from one direction or from each of 16, alike in all of the space (5.1.1).

@@ -60,6 +60,57 @@ TEST_P(HumanField, FiveTypicalPlaces) {
     EXPECT_GT(r[edge].mean_J, 0);
 }
 
+// What passes at a place, of a field along the grid's axes.
+struct PassesThere {
+    double frequency = 0, speed_m_s = 0, energy_J = 0;
+};
+PassesThere passes_at(const SpaceField& field, const Vec3& at) {
+    std::array<std::int32_t, 3> cell{};
+    for (std::size_t a = 0; a < 3; ++a)
+        cell[a] = static_cast<std::int32_t>(
+            std::floor((at[a] - field.corner_m[a]) / field.along_m[a][a]));
+    const auto found = std::ranges::lower_bound(field.cell, cell);
+    if (found == field.cell.end() || *found != cell) return {};
+    const auto n = static_cast<std::size_t>(found - field.cell.begin());
+    const auto& v = field.velocity_m_s[n];
+    return {field.frequency[n], std::hypot(v[0], v[1], v[2]), field.energy[n]};
+}
+
+// "The distribution of velocity above the table center, or any unreachable points, is zero" (5.1.2).
+TEST_P(HumanField, OverSpaceIsNothingAboveTheMiddleOfATable) {
+    test::Room room(0.025, {0, 0}, {5, 5});
+    room.box(1.5, 3.5, 1.5, 3.5, 0.725, 0.75);  // two metres wide
+    room.thing(1.55, 2.5, 0.75);
+    const Surroundings around = room.surroundings();
+    EXPECT_FALSE(human_field(*device, around, room.objects, {}).space);
+    HumanOptions options;
+    options.over_space = true;
+    const std::optional<SpaceField> field =
+        human_field(*device, around, room.objects, options).space;
+    ASSERT_TRUE(field);
+    EXPECT_TRUE(std::ranges::is_sorted(field->cell));
+    for (double z = 0.8; z < 1.1; z += 0.05)
+        EXPECT_EQ(passes_at(*field, {2.5, 2.5, z}).frequency, 0) << z;
+    EXPECT_EQ(passes_at(*field, {0.75, 2.5, 1.9}).frequency, 0) << "above their heads";
+    const PassesThere beside = passes_at(*field, {0.75, 2.5, 0.9});
+    EXPECT_GT(beside.frequency, 0.05);
+    const SecondaryMotion motion = table_motion(options);
+    double fastest = 0;
+    for (const MotionLayer& layer : motion.layers) fastest = std::max(fastest, layer.speed_m_s);
+    for (std::size_t n = 0; n < field->size(); ++n) {
+        const auto& v = field->velocity_m_s[n];
+        ASSERT_LE(std::hypot(v[0], v[1]), fastest * 1.0001);
+        ASSERT_GE(field->energy[n], 0.999 * std::ranges::min(motion.energy_J));
+        ASSERT_LE(field->energy[n], 1.001 * std::ranges::max(motion.energy_J));
+    }
+    // Of two kinds that are alike, each comes half as often.
+    const std::array two{options, options};
+    const auto both = people_field(*device, around, room.objects, two).space;
+    ASSERT_TRUE(both && both->cell == field->cell);
+    for (std::size_t n = 0; n < both->size(); ++n)
+        ASSERT_NEAR(both->frequency[n], field->frequency[n], 1e-6);
+}
+
 TEST_P(HumanField, NoArmReachesThroughAWall) {
     for (const bool wall : {false, true}) {
         test::Room room(0.025, {0, 0}, {3, 2});

@@ -177,6 +177,55 @@ TEST_F(WindField, OneWindComesFromWhereItIsSaidTo) {
     EXPECT_GT(all, 0);
 }
 
+// In the lee of a wall there is none; elsewhere it blows as it was said to.
+TEST_F(WindField, OverSpaceIsAllButTheLeeOfAWall) {
+    test::Room room(0.025, {-2, -2}, {3, 3});
+    room.box(0.5, 0.6, -2, 3, 0, 1);
+    WindOptions options;
+    options.from_deg = 270;  // along +x
+    options.over_space = true;
+    const auto field = wind_field(*device, room.surroundings(), room.objects, options).space;
+    ASSERT_TRUE(field);
+    const auto blows = [&](double x, double z) {
+        const std::array<double, 3> at{x, 0.52, z};
+        std::array<std::int32_t, 3> cell{};
+        for (std::size_t a = 0; a < 3; ++a)
+            cell[a] = static_cast<std::int32_t>(
+                std::floor((at[a] - field->corner_m[a]) / field->along_m[a][a]));
+        return std::ranges::binary_search(field->cell, cell);
+    };
+    EXPECT_TRUE(blows(0.3, 0.5)) << "before the wall";
+    EXPECT_FALSE(blows(0.55, 0.5)) << "in the wall";
+    for (const double x : {0.7, 1.0, 1.4}) EXPECT_FALSE(blows(x, 0.5)) << x;
+    EXPECT_TRUE(blows(1.8, 0.5)) << "where the lee ends";
+    for (std::size_t n = 0; n < field->size(); ++n) {
+        ASSERT_EQ(field->frequency[n], 1);
+        ASSERT_NEAR(field->velocity_m_s[n][0], 12, 1e-5);
+        ASSERT_NEAR(field->energy[n], 0.5 * 1.2 * 144, 1e-3);
+    }
+    EXPECT_EQ(field->energy_unit, "J/m^3");
+}
+
+TEST_F(WindField, BlowsInClosedRoomsWhereItIsAskedFor) {
+    test::Room room(0.02, {-2, -2}, {3, 3});
+    const auto cup = static_cast<std::size_t>(room.thing(0.5, 0.5, 0, 0.1, 0.2));
+    Surroundings around = room.surroundings();
+    const auto works = [&](const ParseOptions& asked) {
+        return !wind_kind().field(*device, around, room.objects, asked).work[cup].empty();
+    };
+    ParseOptions only, strong, from_one_side;
+    only.disturbances = {"wind"};
+    strong.wind_m_s = 20;
+    from_one_side.wind_from_deg = 90;
+    EXPECT_TRUE(works({}));
+    around.below_ceiling = true;
+    EXPECT_FALSE(works({}));
+    EXPECT_FALSE(wind_kind().field(*device, around, room.objects, {}).notes.empty());
+    EXPECT_TRUE(works(only));
+    EXPECT_TRUE(works(strong));
+    EXPECT_TRUE(works(from_one_side));
+}
+
 TEST_F(WindField, NothingInTheWind) {
     test::Room room(0.02);
     const auto empty = wind_field(*device, room.surroundings(), room.objects, {});
