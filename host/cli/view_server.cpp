@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <cerrno>
@@ -18,6 +21,7 @@
 #include <utility>
 
 #include "io/open_file.h"
+#include "io/output_folder.h"
 #include "io/text.h"
 #include "topple/error.h"
 
@@ -64,16 +68,124 @@ std::optional<std::string> decoded(std::string_view text) {
     return out;
 }
 
+std::int64_t now_ms() {
+    using namespace std::chrono;
+    return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+}
+
 // What lies in the folder that is served, and where it is served.
-struct Served {
-    io::Descriptor folder;
+class Served {
+  public:
+    explicit Served(const std::filesystem::path& folder)
+        : path_(std::filesystem::absolute(folder)), folder_(opened()) {
+        if (folder_.get() < 0)
+            io::fail(folder, std::string("can't be opened: ") + std::strerror(errno));
+        output_ = output_there();
+    }
+    int folder() const { return folder_.get(); }
+    std::int64_t since_ms() const { return since_ms_; }  // that this output is served
+
+    // Takes what lies at the folder's path now, if that is another output.
+    void look() {
+        struct stat there {}, here {};
+        if (stat(path_.c_str(), &there) == 0 && fstat(folder(), &here) == 0 &&
+            (there.st_dev != here.st_dev || there.st_ino != here.st_ino)) {
+            try {
+                io::check_output(path_);
+            } catch (const Error&) {
+                return;  // the one that is served was the last
+            }
+            io::Descriptor next = opened();
+            if (next.get() < 0) return;
+            folder_ = std::move(next);
+        }
+        const Output now = output_there();
+        if (now == output_ || now == Output{}) return;
+        output_ = now;
+        since_ms_ = now_ms();
+    }
+
     std::string port;
+    std::size_t listeners = 0;
+
+  private:
+    // An output's last file: by its device, inode and time.
+    using Output = std::array<std::int64_t, 4>;
+
+    io::Descriptor opened() const {
+        return io::Descriptor(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    }
+    Output output_there() const {
+        struct stat about {};
+        if (fstatat(folder(), "scene.json", &about, AT_SYMLINK_NOFOLLOW) != 0) return {};
+        return {static_cast<std::int64_t>(about.st_dev), static_cast<std::int64_t>(about.st_ino),
+                about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
+    }
+
+    std::filesystem::path path_;
+    io::Descriptor folder_;
+    Output output_{};
+    std::int64_t since_ms_ = now_ms();
+};
+
+// One who listens to what is served, as long as that holds.
+class Listener : public std::enable_shared_from_this<Listener> {
+  public:
+    static constexpr std::size_t most = 32;
+
+    Listener(beast::tcp_stream stream, Served& served)
+        : stream_(std::move(stream)), timer_(stream_.get_executor()), served_(served) {
+        ++served_.listeners;
+    }
+    ~Listener() { --served_.listeners; }
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+
+    void begin() {
+        say("HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\n"
+            "X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n" +
+            event());
+    }
+
+  private:
+    std::string event() {
+        told_ms_ = served_.since_ms();
+        return "event: output\ndata: " + std::to_string(told_ms_) + "\n\n";
+    }
+    void say(std::string text) {
+        text_ = std::move(text);
+        silent_ = 0;
+        stream_.expires_after(std::chrono::seconds(30));
+        boost::asio::async_write(
+            stream_, boost::asio::buffer(text_),
+            [self = shared_from_this()](beast::error_code error, std::size_t) {
+                if (!error) self->wait();
+            });
+    }
+    void wait() {
+        constexpr auto pause = std::chrono::milliseconds(200);
+        constexpr int longest_silence = 75;  // pauses, until it is asked whether somebody listens
+        timer_.expires_after(pause);
+        timer_.async_wait([self = shared_from_this()](beast::error_code error) {
+            if (error) return;
+            if (self->told_ms_ != self->served_.since_ms()) return self->say(self->event());
+            if (++self->silent_ >= longest_silence) return self->say(":\n\n");
+            self->wait();
+        });
+    }
+
+    beast::tcp_stream stream_;
+    boost::asio::steady_timer timer_;
+    Served& served_;
+    std::string text_;
+    std::int64_t told_ms_ = 0;
+    int silent_ = 0;
 };
 
 // One connection: requests one after another, until it is idle for long or says that it ends.
 class Session : public std::enable_shared_from_this<Session> {
   public:
-    Session(tcp::socket socket, const Served& served)
+    Session(tcp::socket socket, Served& served)
         : stream_(std::move(socket)), served_(served) {}
 
     void read() {
@@ -99,12 +211,19 @@ class Session : public std::enable_shared_from_this<Session> {
         const std::string_view target = as_text(request.target());
         const auto path = decoded(target.substr(0, target.find_first_of("?#")));
         if (!path || !path->starts_with('/')) return not_found(request);
+        if (*path == "/events" && request.method() == http::verb::get) return listen(request);
         send_file(request, *path == "/" ? "report.html" : path->substr(1));
+    }
+
+    void listen(const Request& request) {
+        if (served_.listeners >= Listener::most)
+            return refuse(request, http::status::service_unavailable, "Too many listen already.");
+        std::make_shared<Listener>(std::move(stream_), served_)->begin();
     }
 
     void send_file(const Request& request, const std::string& name) {
         if (!plain_name(name)) return not_found(request);
-        const int fd = openat(served_.folder.get(), name.c_str(),
+        const int fd = openat(served_.folder(), name.c_str(),
                               O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         if (fd < 0) return not_found(request);
         beast::file_posix file;
@@ -159,12 +278,13 @@ class Session : public std::enable_shared_from_this<Session> {
     beast::tcp_stream stream_;
     beast::flat_buffer buffer_{1 << 16};
     std::optional<http::request_parser<http::string_body>> parser_;
-    const Served& served_;
+    Served& served_;
 };
 
 }  // namespace
 
 struct ViewServer::Inner {
+    explicit Inner(const std::filesystem::path& folder) : served(folder) {}
     void accept() {
         acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
             if (!error) std::make_shared<Session>(std::move(socket), served)->read();
@@ -178,11 +298,8 @@ struct ViewServer::Inner {
 };
 
 ViewServer::ViewServer(const std::filesystem::path& folder, std::uint16_t port)
-    : inner_(std::make_unique<Inner>()) {
+    : inner_(std::make_unique<Inner>(folder)) {
     Served& served = inner_->served;
-    served.folder = io::Descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (served.folder.get() < 0)
-        io::fail(folder, std::string("can't be opened: ") + std::strerror(errno));
     tcp::acceptor& acceptor = inner_->acceptor;
     beast::error_code error;
     acceptor.open(tcp::v4(), error);
@@ -205,7 +322,10 @@ std::string ViewServer::url() const {
 }
 
 void ViewServer::run(const std::function<bool()>& done) {
-    while (!done()) inner_->context.run_for(std::chrono::milliseconds(100));
+    while (!done()) {
+        inner_->served.look();
+        inner_->context.run_for(std::chrono::milliseconds(100));
+    }
 }
 
 }  // namespace topple::cli

@@ -9,7 +9,10 @@
 
 namespace topple::cli {
 
-// Serves the files that lie in one folder, and nothing else, over HTTP to this machine alone.
+// Serves the files that lie in one folder, and nothing else, over HTTP to this machine alone. Where
+// another output takes its place, as `topple live` writes them, that is served from then on, and
+// those who listen at /events are told: by a server-sent event `output` with the time at which that
+// was, milliseconds since 1970, which comes once at first.
 //
 // A request names a file of the folder itself: names with a slash, hidden files, links and what is
 // no regular file are not found, so that no path leads out of it. Nothing is written. Requests that

@@ -10,7 +10,7 @@ set(PAGE ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
 set(PAGE_SCRIPTS ${PAGE}/data.js ${PAGE}/words.js ${PAGE}/glossary.js ${PAGE}/place.js ${PAGE}/charts.js ${PAGE}/fragility.js
                  ${PAGE}/landscapes.js ${PAGE}/contacts.js ${PAGE}/shaders.js ${PAGE}/overlays.js ${PAGE}/view.js ${PAGE}/sight.js ${PAGE}/painter.js
                  ${PAGE}/corrections.js ${PAGE}/parts.js ${PAGE}/compare_scans.js ${PAGE}/compare_parses.js ${PAGE}/compare.js
-                 ${PAGE}/tables.js ${PAGE}/risk.js ${PAGE}/furniture.js ${PAGE}/plan.js ${PAGE}/sheet.js ${PAGE}/main.js)
+                 ${PAGE}/tables.js ${PAGE}/risk.js ${PAGE}/furniture.js ${PAGE}/plan.js ${PAGE}/sheet.js ${PAGE}/follow.js ${PAGE}/main.js)
 list(JOIN PAGE_SCRIPTS "," PAGE_SCRIPT_LIST)
 set(PAGE_PARTS ${CMAKE_CURRENT_BINARY_DIR}/report/page_parts.cpp)
 file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/report)

@@ -68,6 +68,9 @@ TEST_F(Output, is_the_same_again) {
                        "--fields", "--threads", out[0] == 'a' ? "1" : "2"})
                       .code,
                   0);
+    succeeds("parse plane.xyz -o a --quiet");  // over all of these
+    EXPECT_FALSE(std::filesystem::exists(in("a/fields.vdb")));
+    succeeds("parse plane.xyz -o a --quiet --glb --octomap --fields --threads 1");
     for (const std::string name :
          {"points.ply", "solid.ply", "volume.vdb", "objects.glb", "map.bt", "landscapes.json",
           "fields.vdb", "field-wind.png"})

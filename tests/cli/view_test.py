@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 import urllib.error
 import urllib.request
 
@@ -111,6 +112,43 @@ def serves_nothing_else(program, out):
     assert sorted(os.listdir(out)) == before
 
 
+def next_event(stream):
+    """The time that the next event tells, in milliseconds."""
+    for line in stream:
+        if line.startswith(b'data: '):
+            return int(line[6:])
+    raise AssertionError('the events have ended')
+
+
+def tells_of_newer_outputs(program, out):
+    with served(program, out) as (port, _), contextlib.ExitStack() as opened:
+        address = f'http://127.0.0.1:{port}/events'
+        events = opened.enter_context(urllib.request.urlopen(address, timeout=60))
+        assert events.headers['Content-Type'] == 'text/event-stream'
+        first = next_event(events)
+        assert abs(first / 1000 - time.time()) < 60
+        before = (out / 'report.html').read_bytes()
+        subprocess.run([program, 'parse', out.parent / 'scan.xyz', '-o', out, '--title', 'Another title', '--backend', 'native', '--quiet'],
+                       check=True)
+        assert next_event(events) > first
+        assert ask(port, '/')[1] == (out / 'report.html').read_bytes() != before
+        # What is no output is not served in its place, and the last one is until there is another.
+        aside, foreign = out.parent / 'aside', out.parent / 'foreign'
+        foreign.mkdir()
+        (foreign / 'report.html').write_text('foreign')
+        os.rename(out, aside)
+        os.rename(foreign, out)
+        time.sleep(1)
+        assert ask(port, '/')[1] == (aside / 'report.html').read_bytes()
+        (out / 'report.html').unlink()
+        out.rmdir()
+        os.rename(aside, out)
+        assert ask(port, '/events', 'HEAD')[0] == 404 and ask(port, '/events', host='evil.example')[0] == 403
+        for _ in range(31):
+            opened.enter_context(urllib.request.urlopen(address, timeout=60))
+        assert ask(port, '/events')[0] == 503 and ask(port, '/')[0] == 200
+
+
 def ends_by_signals(program, out):
     for wanted in (signal.SIGINT, signal.SIGTERM):
         with served(program, out) as (port, process):
@@ -138,7 +176,7 @@ def main():
     program = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as work:
         out = make_output(program, pathlib.Path(work))
-        for check in (serves_the_files, serves_nothing_else, ends_by_signals, says_what_is_wrong):
+        for check in (serves_the_files, serves_nothing_else, tells_of_newer_outputs, ends_by_signals, says_what_is_wrong):
             check(program, out)
             print(check.__name__)
 

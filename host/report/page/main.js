@@ -369,6 +369,7 @@ async function start() {
   };
   addEventListener('hashchange', follow);
   follow();
+  followOutputs(view, () => parts.marked.size > 0 || !parts.corrections.saved);
   paintPictures(scene);
   setTimeout(() => plan.paint(), 30);  // the page answers before
   window.toppleChoose = choose;
