@@ -284,6 +284,7 @@ std::string at_least_N(double force_N) {
 std::string fix_sentence(const Object& object, const Suggestion& what) {
     constexpr double one_strap_m = 1;  // what is wider turns about a single one; set by hand
     constexpr double high_m = 0.3;     // of where a fall begins; set by hand
+    constexpr double shelf_m = 0.35;   // what is wider is put on no shelf; set by hand
     const bool light = object.mass_kg < light_kg, bolted = !what.fasten.wall && what.fasten.floor;
     if (what.leg_of < 0 && is_carried(object) && object.fall.drop_m >= high_m)
         return std::string(worst_words(object).high_mend) + ": from here it falls " +
@@ -291,7 +292,11 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
     if ((bolted && !light && is_carried(object)) || is_moved_about(object.name))
         return "Move it to where nobody passes and it stands level, or take it out.";
     std::string text = mend_of(object, what.fasten);
-    if (light) text = what.leg_of < 0 ? worst_words(object).light_mend : "Fasten it";
+    const bool large = *std::ranges::max_element(object.size_m) > shelf_m;
+    if (light)
+        text = what.leg_of >= 0 ? "Fasten it"
+               : large          ? worst_words(object).large_mend
+                                : worst_words(object).light_mend;
     if (!(what.hold.force_N > 0)) return text + ".";
     const safety::DisturbanceKind* kind = safety::find_disturbance_kind(what.hold_against);
     const std::string holds = at_least_N(what.hold.force_N) + " N sideways at least" +

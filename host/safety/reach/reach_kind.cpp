@@ -36,6 +36,7 @@ const DisturbanceKind& reach_kind() {
                              .unit = "times in 100 holds"},
                   .figure = {"pull_N", " with up to ", "pull", "N"},
                   .light_mend = "Put it out of reach, or fasten it",
+                  .large_mend = "Take it out of the room, or fasten it",
                   .high_mend = "Put it out of reach"},
         .field =
             [](device::Device& device, const Surroundings& surroundings,

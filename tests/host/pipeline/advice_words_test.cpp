@@ -482,6 +482,13 @@ TEST(AdviceWords, WhatIsReachedForGoesOutOfReach) {
     for (const char* words : mug.says) EXPECT_THAT(action_of(mug, "reach"), HasSubstr(words));
     for (const char* words : mug.never)
         EXPECT_THAT(action_of(mug, "reach"), testing::Not(HasSubstr(words)));
+    // A stool that is climbed.
+    Situation stool = mug;
+    stool.mass_kg = 3;
+    stool.size_m = {0.35, 0.35, 0.45};
+    stool.drop_m = 0;
+    EXPECT_THAT(action_of(stool, "reach"), HasSubstr("Take it out of the room, or fasten it"));
+    EXPECT_THAT(action_of(stool, "reach"), testing::Not(HasSubstr("out of reach")));
 }
 
 }  // namespace
