@@ -31,13 +31,6 @@ std::size_t end_of_group(const std::vector<BlockPlace>& blocks, std::size_t begi
     return at;
 }
 
-// Asks for sums, which lie scattered, before they are read or added to.
-void prefetch(const CellSums& sums) {
-    const auto* bytes = reinterpret_cast<const char*>(&sums);
-    __builtin_prefetch(bytes);
-    __builtin_prefetch(bytes + sizeof(CellSums) - 1);
-}
-
 // Writes the cells of blocks [begin, end), which share their x, by ascending key.
 void write_slab(const std::vector<BlockPlace>& blocks, std::size_t begin, std::size_t end,
                 const CellSums** out) {
@@ -129,7 +122,7 @@ void CellTable::add(std::span<const Reading> readings, std::uint32_t frame) {
                 continue;
             }
             place[n] = place_of(some[n].key());
-            prefetch(cells_[place[n]]);
+            __builtin_prefetch(&cells_[place[n]]);
         }
         for (std::size_t n = 0; n < some.size(); ++n) cells_[place[n]].add(some[n], frame);
     }

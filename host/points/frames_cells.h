@@ -6,6 +6,7 @@
 #include <boost/container/options.hpp>
 #include <boost/container/vector.hpp>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,14 +39,15 @@ struct Reading {
 
 // What the readings in one cell sum up to. Integers, so that the sums do not depend on the order in
 // which threads or frames arrive. Offsets are 1 / 65536 of a cell from its lowest corner.
-// Not initialised by itself, so that millions of them may be made where each is written.
-struct CellSums {
+// Not initialised by itself, so that millions of them may be made where each is written. A cache
+// line: they lie scattered where readings are added to them.
+struct alignas(64) CellSums {
     std::uint64_t key;
     std::array<std::uint64_t, 3> offset;  // sum of weight * offset
-    std::uint64_t weight;       // sum of inverse variances, in 65535ths of the best reading's
-    std::uint32_t count;        // readings
-    std::uint32_t best_weight;  // of the best reading,
-    std::uint32_t best_frame;   // and its frame, the first of equals
+    std::uint64_t weight : 48;      // sum of inverse variances, in 65535ths of the best reading's
+    std::uint64_t best_weight : 16;  // of the best reading here,
+    std::uint32_t best_frame;        // and its frame, the first of equals
+    std::uint32_t count;             // readings
     // Of the readings whose colour is known: weight * channel, with weights of 8 bits, and those
     // weights. What would not fit is left out: the mean of 65,000 good readings is known by then.
     std::array<std::uint32_t, 3> colour;
@@ -54,6 +56,7 @@ struct CellSums {
     void add(const Reading& reading, std::uint32_t frame);
     void add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights);
 };
+static_assert(sizeof(CellSums) == 64);
 
 inline void CellSums::add(const Reading& reading, std::uint32_t frame) {
     const std::uint32_t w = reading.weight;
@@ -84,7 +87,7 @@ class CellTable {
     // Grows without a copy, which would take as much memory once more.
     template <class T>
     using Grown = boost::container::deque<
-        T, void,
+        T, std::allocator<T>,
         typename boost::container::deque_options<boost::container::block_size<256U>>::type>;
     struct Block {
         std::uint64_t key = 0;
@@ -126,7 +129,7 @@ class CellTable {
     std::size_t last_ = 0;  // the cube found last
 };
 
-using SortedCells = boost::container::vector<CellSums>;
+using SortedCells = boost::container::vector<CellSums, std::allocator<CellSums>>;
 // Where cells lie in their tables.
 using CellPlaces = boost::container::vector<const CellSums*>;
 
