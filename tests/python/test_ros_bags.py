@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Bags of ROS: depth images with tf, and clouds, from what rosbags and mcap-ros2-support write."""
+import concurrent.futures
 import struct
+import time
 
 import numpy as np
 import pytest
@@ -115,6 +117,27 @@ def test_depth_images(walk, sequence, device, tmp_path, storage, encoding):
     assert any(f'{len(walk)} of the {len(walk)} depth images' in note and '"map"' in note for note in result.notes)
     alone = next(file for file in bag.iterdir() if file.suffix in ('.mcap', '.db3'))
     assert [o.mass_kg for o in parsed(alone, device).objects] == [o.mass_kg for o in result.objects]
+
+
+def test_bags_are_played_at_their_pace(walk, tmp_path):
+    """Image by image, as a converted one has them; a second of the bag takes a fifth of one at a rate of five."""
+    bag, played, converted = write_bag(tmp_path / 'bag', 'mcap', depth_messages(walk[:6], '16UC1')), tmp_path / 'played', tmp_path / 'converted'
+    begun = time.monotonic()
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        playing = pool.submit(topple.formats.play, bag, played, rate=5)
+        counts = []
+        while not playing.done():
+            counts.append(len((played / 'trajectory.txt').read_text().splitlines()) if (played / 'trajectory.txt').exists() else 0)
+            time.sleep(0.05)
+    assert time.monotonic() - begun >= 5 / 5 and len(set(counts)) >= 4 and counts == sorted(counts)
+    assert any('6 of the 6 depth images' in note for note in playing.result())
+    topple.formats.convert(bag, converted)
+    for name in ('intrinsics.json', 'trajectory.txt', *(f'depth/{n:06d}.png' for n in range(6))):
+        assert (played / name).read_bytes() == (converted / name).read_bytes(), name
+    for source, out, rate, words in ((bag, played, 1, 'is there already'), (bag, tmp_path / 'a', 0, 'rate 0'), (played, tmp_path / 'a', 1, 'is no bag'),
+                                     (tmp_path / 'missing', tmp_path / 'a', 1, 'is not there')):
+        with pytest.raises(topple.Error, match=words):
+            topple.formats.play(source, out, rate=rate)
 
 
 def picture(time, pixels, frame, encoding='bgr8'):

@@ -10,6 +10,7 @@ import os
 import pathlib
 import shutil
 import tempfile
+import time
 import weakref
 from typing import List, Optional
 
@@ -127,6 +128,30 @@ def convert(path, out, options=Options()):
             finally:
                 shutil.rmtree(beside)
         return dataclasses.replace(converted, path=out)
+
+
+def play(path, out, rate=1.0, topic=None):
+    """Plays the depth frames of a bag of ROS at their pace, `rate` times as fast, into a folder that `topple live` may follow meanwhile.
+    Reads in this process, without limits of memory and time. Returns the notes. Raises topple.Error; out must not be there yet."""
+    path, out = pathlib.Path(path), pathlib.Path(out)
+    if os.path.lexists(out):
+        raise wrong(out, 'is there already; name another, or delete it', 'usage')
+    if not out.absolute().parent.is_dir():
+        raise wrong(out, 'its folder is not there', 'usage')
+    if not (isinstance(rate, (int, float)) and 0 < rate < float('inf')):
+        raise wrong(path, f'rate {rate}: expected a number above 0', 'usage')
+    if format_of(path) is not ros_bag:
+        raise wrong(path, 'is no bag of ROS (.bag, .mcap, .db3 or a folder of one)' if path.exists() else 'is not there')
+    begun = []
+
+    def wait(recorded_ns):
+        if not begun:
+            begun.extend((recorded_ns, time.monotonic()))
+        due = begun[1] + (recorded_ns - begun[0]) / 1e9 / rate
+        time.sleep(max(0.0, due - time.monotonic()))
+
+    with reading(path, ros_bag.FORMAT), np.errstate(all='ignore'):
+        return [printable(note) for note in ros_bag.play(path, out, Options(topic=topic, isolate=False), wait)]
 
 
 def _keep_notes(kept, out, converted):

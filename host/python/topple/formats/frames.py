@@ -54,7 +54,7 @@ def as_seen_by(camera, depth, other):
 
 
 class FrameFolder:
-    """Writes the folder frame by frame; all frames get the first one's intrinsics."""
+    """Writes the folder frame by frame, so that `topple live` may follow it; all frames get the first one's intrinsics."""
 
     def __init__(self, folder, source, depth_scale=1000.0):
         """source: the file to name in errors; depth_scale: metres = stored value / depth_scale."""
@@ -73,6 +73,8 @@ class FrameFolder:
         if self.camera is None:
             self._check(camera)
             self.camera = camera
+            values = {**dataclasses.asdict(camera), 'depth_scale': self.depth_scale}
+            (self.folder / 'intrinsics.json').write_text(json.dumps(values))
         if camera != self.camera:
             self.resampled += 1
             colour = None  # they would have intrinsics of their own
@@ -88,6 +90,8 @@ class FrameFolder:
             ending = 'png' if colour.startswith(b'\x89PNG') else 'jpg'
             (self.folder / 'color' / f'{name}.{ending}').write_bytes(colour)
         self.poses.append(pose)
+        with open(self.folder / 'trajectory.txt', 'a', encoding='ascii') as file:
+            file.write(' '.join(repr(float(v)) for v in np.asarray(pose)[:3].ravel()) + '\n')
 
     def _check(self, camera):
         if not (camera.width > 0 and camera.height > 0 and np.isfinite([camera.fx, camera.fy, camera.cx, camera.cy]).all()
@@ -95,14 +99,9 @@ class FrameFolder:
             raise wrong(self.source, f'its camera makes no sense, in pixels: {camera}')
 
     def finish(self, notes=()):
-        """Writes what is not images; returns the notes, with what was done to the frames."""
+        """The notes, with what was done to the frames."""
         if not self.poses:
             raise wrong(self.source, 'has no depth frame with a pose')
-        values = dataclasses.asdict(self.camera)
-        values['depth_scale'] = self.depth_scale
-        (self.folder / 'intrinsics.json').write_text(json.dumps(values))
-        lines = [' '.join(repr(float(v)) for v in np.asarray(pose)[:3].ravel()) for pose in self.poses]
-        (self.folder / 'trajectory.txt').write_text('\n'.join([*lines, '']))
         notes = list(notes)
         if self.resampled:
             notes.append(f'{self.resampled} of {len(self.poses)} depth images have intrinsics of their own, and were resampled '

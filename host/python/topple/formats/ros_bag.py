@@ -231,7 +231,8 @@ class _Moved:
         return True
 
 
-def _frames(bag, folder, topic, others):
+def _frames(bag, folder, topic, others, wait=None):
+    """wait(ns): is called before each image is looked at, with the time of its recording."""
     transforms = _transforms(bag)
     first = next((message for _, message in bag.messages(topic)), None)
     if first is None:
@@ -249,6 +250,8 @@ def _frames(bag, folder, topic, others):
     seen = unplaced = coloured = 0
     for recorded, message in bag.between(topic):
         seen += 1
+        if wait is not None:
+            wait(recorded)
         frame = message.header.frame_id.lstrip('/')
         pose = transforms.to_root(frame, _time(message.header))
         if pose is None:
@@ -346,6 +349,16 @@ def _cloud(bag, topic, others):
         notes.append(f'Other topics with clouds were left out: {", ".join(others)}.')
     viewpoint = None if not placed else places[0].astype(float) if taken == 1 else places
     return Cloud(points, colours if coloured else None, viewpoint, notes=notes)
+
+
+def play(path, folder, options, wait):
+    """Writes the bag's depth frames as convert() does, one by one: each after wait(ns) of its time of recording. Returns the notes."""
+    with Bag(path, Budget(path, options)) as bag:
+        depth = _depth_topics(bag)
+        if not depth:
+            raise wrong(path, 'has no depth image (16UC1, 32FC1, compressedDepth) that could be played')
+        topic = _most(depth, options.topic, path, 'depth image')
+        return _frames(bag, folder, topic, sorted(set(depth) - {topic}), wait)[1]
 
 
 def convert(path, folder, options):
