@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 """How rooms stand in simulators, from a scan to the last step, all objects free at once.
 
-  simulators.py TOPPLE [--rooms 12] [--kinds kitchen,office] [--scans PATH...] [--bullet] [--drop] [--jobs 2]
+  simulators.py TOPPLE [--rooms 12] [--kinds kitchen,office] [--scans PATH...] [--bullet] [--warp] [--drop] [--jobs 2]
 
 Generates rooms of each kind, parses them and the scans, exports them, and lets MuJoCo (PyPI's mujoco), with --bullet also
-Bullet (pybullet), go on for 5 s. An object stays where it moves less than 1 cm and turns less than 2 degrees. With --drop
+Bullet (pybullet) and with --warp MuJoCo Warp (mujoco-warp), go on for 5 s. An object stays where it moves less than 1 cm and turns less than 2 degrees. With --drop
 each body falls alone on a plane, from 8 times its height, and is to rest there within 8 s, not in the plane. A line a room,
 then a table. Only what topple says to stand counts as stable; what the export holds in its place is counted apart.
 """
@@ -91,6 +91,34 @@ def in_bullet(folder, names):
         pybullet.disconnect(client)
 
 
+def times_asleep(folder):
+    """Times real time where what is at rest sleeps, over as long."""
+    model = mujoco.MjModel.from_xml_path(os.path.join(folder, 'scene_asleep.xml'))
+    data = mujoco.MjData(model)
+    started = time.process_time()
+    for _ in range(round(SECONDS / model.opt.timestep)):
+        mujoco.mj_step(model, data)
+    return SECONDS / max(time.process_time() - started, 1e-6)
+
+
+def in_warp(folder, names):
+    """As in_mujoco, only the ends, without speeds: by MuJoCo's kernels for GPUs, here on the processor."""
+    import mujoco_warp
+    model = mujoco.MjModel.from_xml_path(os.path.join(folder, 'scene.xml'))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    body = [model.body(name).id for name in names]
+    place, pose = data.xpos[body].copy(), data.xquat[body].copy()
+    on_device = mujoco_warp.put_model(model)
+    # Room for contacts: those of the start and more.
+    moving = mujoco_warp.put_data(model, data, nconmax=4 * data.ncon + 500, njmax=20 * data.ncon + 2000)
+    for _ in range(round(SECONDS / model.opt.timestep)):
+        mujoco_warp.step(on_device, moving)
+    ended, turned = moving.xpos.numpy()[0], moving.xquat.numpy()[0]
+    return {name: (float(np.linalg.norm(ended[b] - place[n])), turned_deg(turned[b], pose[n]))
+            for n, (name, b) in enumerate(zip(names, body))}
+
+
 def rests_after_drop(scene, folder, name):
     """Whether a body that falls alone on a plane, from 8 times its height, rests there within 8 s:
     moves less than 1 mm and turns less than half a degree in half a second."""
@@ -151,7 +179,7 @@ def rests_after_drop(scene, folder, name):
     return False
 
 
-def judged(topple, name, scan, bullet, drop):
+def judged(topple, name, scan, bullet, warp, drop):
     """A scan's counts, as Counter; times and depths beside."""
     work = tempfile.mkdtemp(prefix='topple-simulators-', dir=os.environ.get('TMPDIR'))
     try:
@@ -184,15 +212,18 @@ def judged(topple, name, scan, bullet, drop):
             else:
                 count.update(bullet_stable=count['stable'], bullet_stay=sum(stands[n] and stays(ends[n]) for n in names),
                              bullet_fast=sum(ends[n][2] > FAST_M_S for n in names))
+        if warp:
+            ends = in_warp(mjcf, names)
+            count.update(warp_stable=count['stable'], warp_stay=sum(stands[n] and stays(ends[n]) for n in names))
         if drop:
             scene = xml.parse(os.path.join(mjcf, 'scene.xml')).getroot()
             scene.find('compiler').set('meshdir', os.path.join(mjcf, 'scene_mjcf'))
             results = {n: rests_after_drop(scene, mjcf, n) for n in names}
             count.update(dropped=len(results), rested=sum(results.values()))
             bad += [f'{n}: no rest after a drop' for n, rests in results.items() if not rests]
-        return name, count, deepest, times, exported_s, bad
+        return name, count, deepest, times, times_asleep(mjcf), exported_s, bad
     except subprocess.CalledProcessError as error:
-        return name, Counter(failed=1), 0, math.inf, 0, [error.stderr.decode(errors='replace')[-300:]]
+        return name, Counter(failed=1), 0, math.inf, math.inf, 0, [error.stderr.decode(errors='replace')[-300:]]
     finally:
         shutil.rmtree(work, ignore_errors=True)
 
@@ -207,6 +238,8 @@ def line(c):
     if c['bullet_stable'] or c['bullet_unfinished']:
         text += f"; Bullet {share(c['bullet_stay'], c['bullet_stable'])}, fast {c['bullet_fast']}"
         text += f", {c['bullet_unfinished']} unfinished" if c['bullet_unfinished'] else ''
+    if c['warp_stable']:
+        text += f"; MuJoCo Warp {share(c['warp_stay'], c['warp_stable'])}"
     if c['dropped']:
         text += f"; drops {share(c['rested'], c['dropped'])}"
     return text + (f"; {c['failed']} FAILED" if c['failed'] else '')
@@ -217,27 +250,28 @@ def main():
     add_options(parser, rooms=12)
     parser.add_argument('--scans', nargs='*', default=[], help='to be judged, too: what `topple parse` takes')
     parser.add_argument('--bullet', action='store_true')
+    parser.add_argument('--warp', action='store_true')
     parser.add_argument('--drop', action='store_true')
     a = parser.parse_args()
     rooms = [(kind, f'{kind} {seed}', (kind, seed)) for kind, seed in chosen(a)]
     rooms += [('scans', os.path.relpath(path), path) for path in a.scans]
-    total, deepest_m, slowest, longest_s = {}, 0, math.inf, 0
+    total, deepest_m, slowest, slowest_asleep, longest_s = {}, 0, math.inf, math.inf, 0
     with multiprocessing.Pool(a.jobs, maxtasksperchild=1) as pool:
-        waiting = [(group, pool.apply_async(judged, (a.topple, name, scan, a.bullet, a.drop)))
+        waiting = [(group, pool.apply_async(judged, (a.topple, name, scan, a.bullet, a.warp, a.drop)))
                    for group, name, scan in rooms]
         for group, result in waiting:
-            name, count, deepest, times, exported_s, bad = result.get()
+            name, count, deepest, times, asleep, exported_s, bad = result.get()
             total.setdefault(group, Counter()).update(count)
-            deepest_m, slowest = max(deepest_m, deepest), min(slowest, times)
+            deepest_m, slowest, slowest_asleep = max(deepest_m, deepest), min(slowest, times), min(slowest_asleep, asleep)
             longest_s = max(longest_s, exported_s)
-            print(f'{name}: {line(count)}; deepest {1000 * deepest:.3f} mm, {times:.1f} times real time, export '
-                  f'{exported_s:.1f} s', *bad, sep='\n  ', flush=True)
+            print(f'{name}: {line(count)}; deepest {1000 * deepest:.3f} mm, {times:.1f} times real time, {asleep:.1f} '
+                  f'asleep, export {exported_s:.1f} s', *bad, sep='\n  ', flush=True)
     print()
     for group, count in total.items():
         print(f'{group:12} {line(count)}')
     generated = sum((c for g, c in total.items() if g != 'scans'), Counter())
     print(f'{"generated":12} {line(generated)}')
-    print(f'deepest contact {1000 * deepest_m:.3f} mm, slowest {slowest:.2f} times real time, longest export {longest_s:.1f} s')
+    print(f'deepest contact {1000 * deepest_m:.3f} mm, slowest {slowest:.2f} times real time, {slowest_asleep:.2f} asleep, longest export {longest_s:.1f} s')
 
 
 if __name__ == '__main__':
