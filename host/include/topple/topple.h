@@ -485,6 +485,40 @@ int topple_session_thing(const topple_session* session, uint64_t index, topple_t
 int topple_session_label(const topple_session* session, const topple_frames* frames,
                          uint64_t number, int64_t* things, topple_status* status);
 
+/* --- Two scans of one room: topple/compare.h says more --------------------------------------- */
+
+typedef struct topple_comparison topple_comparison;
+enum {
+    TOPPLE_BECAME_SAME = 0,
+    TOPPLE_BECAME_MOVED = 1, /* by moved_m */
+    TOPPLE_BECAME_CAME = 2,
+    TOPPLE_BECAME_WENT = 3,
+    TOPPLE_BECAME_MERGED = 4, /* its place is solid in the other scan, but as other things */
+    TOPPLE_BECAME_UNSEEN = 5  /* the other scan did not see its place */
+};
+typedef struct topple_alignment {
+    size_t size;
+    double a_from_b[16]; /* row-major 4x4: from the later scan's frame to the earlier one's */
+    double seen, agreeing, next_agreeing, error_m;
+    int32_t same_frame;
+} topple_alignment;
+typedef struct topple_compared_thing {
+    size_t size;
+    int32_t a, b; /* objects of the scenes in both folders; -1: there is none */
+    int32_t became;
+    int32_t less_safe, safer, stands_otherwise;
+    double moved_m, free, solid;
+} topple_compared_thing;
+/* a, b: folders that topple_result_write() or `topple parse` has written, the earlier one first.
+ * `things`, which may be NULL: how many topple_comparison_thing() has. */
+int topple_compare(const char* a, const char* b, topple_comparison** comparison, uint64_t* things,
+                   topple_status* status);
+void topple_comparison_release(topple_comparison* comparison);
+int topple_comparison_alignment(const topple_comparison* comparison, topple_alignment* alignment,
+                                topple_status* status);
+int topple_comparison_thing(const topple_comparison* comparison, uint64_t index,
+                            topple_compared_thing* thing, topple_status* status);
+
 /* --- Single stages: topple/stages.h says more ----------------------------------------------- */
 
 /* `device` must be one that was opened or adopted: here NULL is TOPPLE_ERROR_USAGE. */
