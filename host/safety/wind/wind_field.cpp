@@ -12,7 +12,7 @@
 #include "safety/columns.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
-#include "safety/space_sums.h"
+#include "safety/wind/wind_space.h"
 
 namespace topple::safety {
 namespace {
@@ -70,24 +70,6 @@ FirstHits first_hits(const SolidCells& solid, std::span<const std::uint32_t> cel
     return hits;
 }
 
-// Which of the layers asked for, k and above by bit, have nothing solid within `voxels` upwind of a
-// point in the object's front, given in voxels. Half-voxel steps; the first that counts lies
-// outside of the front's own column.
-std::uint64_t open_to_wind(const Columns& columns, double x, double y, std::int32_t k,
-                           std::uint64_t layers, std::int32_t own_i, std::int32_t own_j, double dx,
-                           double dy, double voxels) {
-    std::int64_t last_i = own_i, last_j = own_j;
-    for (double s = 0.5; s <= voxels && layers; s += 0.5) {
-        const auto i = static_cast<std::int64_t>(std::floor(x - s * dx));
-        const auto j = static_cast<std::int64_t>(std::floor(y - s * dy));
-        if ((i == last_i && j == last_j) || (i == own_i && j == own_j)) continue;
-        layers &= ~columns.solid(i, j, k);
-        last_i = i;
-        last_j = j;
-    }
-    return layers;
-}
-
 // Which of the first hits the wind reaches. Layers whose first voxels stand in one column share the
 // line there: up to 64 of them are looked at together.
 std::vector<bool> open_hits(const SolidCells& solid, const Columns& columns, const FirstHits& hits,
@@ -137,92 +119,6 @@ void offer_arrows(ArrowSample& arrows, const SolidCells& solid,
                      {wind[n][0] / wind[n][2] * speed, wind[n][1] / wind[n][2] * speed, 0},
                      wind[n][2] / directions);
     }
-}
-
-// The lattice of the field over space: of whole voxels about space_cell_m wide, more where that
-// were too many.
-struct SpaceLattice {
-    std::array<std::int32_t, 3> low{};    // its lowest voxel
-    std::array<std::int32_t, 3> cells{};  // along each axis
-    std::int32_t step = 1;                // voxels across a cell
-};
-
-SpaceLattice lattice_around(const SolidCells& solid) {
-    constexpr double space_cell_m = 0.05;
-    constexpr std::int64_t most_cells = std::int64_t{1} << 22;
-    SpaceLattice out;
-    const std::array<const std::vector<std::int32_t>*, 3> axes{&solid.i, &solid.j, &solid.k};
-    std::array<std::int64_t, 3> wide{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto [least, greatest] = std::ranges::minmax(*axes[a]);
-        out.low[a] = least;
-        wide[a] = std::int64_t{greatest} - least + 1;
-    }
-    out.step = std::max(1, static_cast<std::int32_t>(std::lround(space_cell_m / solid.voxel_m)));
-    const auto cells = [&](std::size_t a) { return (wide[a] + out.step - 1) / out.step; };
-    while (cells(0) > most_cells / cells(1) || cells(0) * cells(1) > most_cells / cells(2))
-        out.step *= 2;
-    for (std::size_t a = 0; a < 3; ++a) out.cells[a] = static_cast<std::int32_t>(cells(a));
-    return out;
-}
-
-// The share of gales that reach the middle of each cell in which nothing is solid, and their mean.
-SpaceField wind_over_space(ThreadPool& threads, const SolidCells& solid, const Columns& columns,
-                           const std::vector<std::array<double, 2>>& blown,
-                           const WindOptions& options) {
-    if (solid.size() == 0) return {};
-    const SpaceLattice lattice = lattice_around(solid);
-    const auto [ni, nj, nk] = lattice.cells;
-    const std::int32_t step = lattice.step, per_word = std::max(1, 64 / step);
-    const double h = solid.voxel_m, shelter = options.shelter_m / h;
-    const float share = 1.0f / static_cast<float>(blown.size());
-    const auto speed = static_cast<float>(options.speed_m_s);
-    const auto energy = static_cast<float>(0.5 * options.air_density_kg_m3 * options.speed_m_s *
-                                           options.speed_m_s);
-    const auto voxel = [&](std::size_t axis, std::int32_t cell) {
-        return lattice.low[axis] + cell * step + step / 2;
-    };
-    // By the cells' first index, so that they come in order.
-    std::vector<std::vector<Passing>> slabs(static_cast<std::size_t>(ni));
-    threads.each(slabs.size(), 1, [&](std::size_t a) {
-        std::vector<Passing>& slab = slabs[a];
-        slab.resize(static_cast<std::size_t>(nj) * static_cast<std::size_t>(nk));
-        const std::int32_t i = voxel(0, static_cast<std::int32_t>(a));
-        for (std::int32_t b = 0; b < nj; ++b) {
-            const std::int32_t j = voxel(1, b);
-            for (std::int32_t first = 0; first < nk; first += per_word) {
-                std::uint64_t asked = 0;
-                const std::int32_t layers = std::min(per_word, nk - first), k = voxel(2, first);
-                for (std::int32_t l = 0; l < layers; ++l) asked |= std::uint64_t{1} << (l * step);
-                asked &= ~columns.solid(i, j, k);
-                for (const auto& [dx, dy] : blown) {
-                    if (asked == 0) break;
-                    const std::uint64_t reached = open_to_wind(columns, i + 0.5, j + 0.5, k, asked,
-                                                               i, j, dx, dy, shelter);
-                    for (std::int32_t l = 0; l < layers; ++l)
-                        if (reached >> (l * step) & 1)
-                            slab[static_cast<std::size_t>(b) * static_cast<std::size_t>(nk) +
-                                 static_cast<std::size_t>(first + l)]
-                                .add({1,
-                                      {static_cast<float>(dx) * speed,
-                                       static_cast<float>(dy) * speed, 0},
-                                      energy},
-                                     share);
-                }
-            }
-        }
-    });
-    SpaceSums sums({lattice.low[0] * h, lattice.low[1] * h, lattice.low[2] * h}, step * h);
-    for (std::int32_t a = 0; a < ni; ++a)
-        for (std::int32_t b = 0; b < nj; ++b)
-            for (std::int32_t c = 0; c < nk; ++c)
-                sums.add({a, b, c},
-                         slabs[static_cast<std::size_t>(a)]
-                              [static_cast<std::size_t>(b) * static_cast<std::size_t>(nk) +
-                               static_cast<std::size_t>(c)]);
-    SpaceField out = sums.take();
-    out.energy_unit = "J/m^3";
-    return out;
 }
 
 // The ways that the wind blows, unit.
