@@ -9,6 +9,8 @@
 
 #include "graph/group_energy.h"
 #include "graph/stable_objects.h"
+#include "graph/supports.h"
+#include "graph/undersides.h"
 #include "lab/evaluation/greedy.h"
 #include "lab/evaluation/tables.h"
 #include "lab/evaluation/text.h"
@@ -37,36 +39,36 @@ std::vector<std::int32_t> bodies_of_primitives(const RoomParts& room) {
     return out;
 }
 
-// Which object carries which, by the contacts of their primitives alone.
-std::vector<Support> supports_between(const graph::ContactGraph& contacts,
-                                      std::span<const std::int32_t> object_of_primitive,
-                                      const std::vector<bool>& grounded) {
-    const auto object = [&](std::int32_t p) { return object_of_primitive[p]; };
-    std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
-    for (const graph::Carrying& c : contacts.carryings) {
-        if (c.supporter < 0) continue;
-        const auto pair = std::pair(object(c.supporter), object(c.supported));
-        // The ground carries, and nothing carries it, though fragments of it may lie on things.
-        if (pair.first != pair.second && !grounded[pair.second]) carried[pair] += c.area_m2;
-    }
-    std::vector<Support> supports;
-    for (const auto& [pair, area] : carried) supports.push_back({pair.first, pair.second, area});
-    return supports;
+// What supports are told by, whatever the groups are: as a parse has it once it knows them.
+struct Contacts {
+    graph::ContactGraph graph;
+    std::vector<double> pair_probability;
+};
+Contacts true_borders(device::Device& device, const RoomParts& room) {
+    Contacts out;
+    out.graph = graph::build_contact_graph(device, room.solids->cells(),
+                                           static_cast<std::int32_t>(room.parts.bodies.size()),
+                                           room.solids->boundary());
+    out.pair_probability =
+        graph::pair_probabilities(out.graph, room.parts.joints, room.parts.shell);
+    return out;
 }
 
 // What a parse with these groups would say. group: of each primitive, -1 for the ground's.
-scenes::RelationScore judged(const RoomParts& room, const std::vector<std::int32_t>& group) {
+scenes::RelationScore judged(const RoomParts& room, const Contacts& contacts,
+                             const std::vector<std::int32_t>& group) {
     // The ground is object 0.
     std::vector<std::int32_t> object;
-    std::int32_t objects = 1;
-    for (const std::int32_t g : group) {
-        object.push_back(g + 1);
-        objects = std::max(objects, g + 2);
+    Table<ObjectId, graph::Carried> carried(1, {.grounded = true});
+    for (std::size_t p = 0; p < group.size(); ++p) {
+        object.push_back(group[p] + 1);
+        carried.resize(std::max(carried.size(), static_cast<std::size_t>(group[p] + 2)));
+        carried[object.back()].mass_kg += room.parts.bodies[p].mass_kg;
     }
-    std::vector<bool> grounded(static_cast<std::size_t>(objects), false);
-    grounded[0] = true;
     Scene scene;
-    scene.supports = supports_between(room.parts.contacts, object, grounded);
+    scene.supports = graph::find_supports(
+        contacts.graph, contacts.pair_probability, object, carried,
+        graph::undersides(room.solids->cells(), object, carried.size()));
     for (const std::int32_t p : room.points.primitive)
         scene.points.object.push_back(p < 0 ? -1 : object[p]);
     return scenes::relation_score(room.world, scene, room.part);
@@ -132,9 +134,10 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
     const PartStage& p = room.parts;
     Groupings out;
     out.seed = room.world.seed;
+    const Contacts contacts = true_borders(device, room);
     const auto joints = features_of(p.contacts, p.bodies, p.shell.pinned);
     out.discriminative =
-        judged(room, join_by_probability(p.contacts, joints, weights, p.shell.pinned));
+        judged(room, contacts, join_by_probability(p.contacts, joints, weights, p.shell.pinned));
 
     const graph::GroupingOptions options;
     const auto biased = graph::biased_joints(p.joints, options.joint_bias);
@@ -145,12 +148,12 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
     for (const graph::Joint& joint : p.joints) edges.push_back({joint.a, joint.b});
     const GreedyPartition greedy =
         greedy_merges(p.contacts.primitives, edges, p.shell.pinned, energy_of);
-    out.greedy = judged(room, greedy.label);
+    out.greedy = judged(room, contacts, greedy.label);
     out.greedy_energy = greedy.energy;
 
     const graph::Grouping sampled =
         graph::group_primitives(device, p.contacts, p.bodies, p.joints, p.shell, options);
-    out.sampled = judged(room, sampled.group);
+    out.sampled = judged(room, contacts, sampled.group);
     out.sampled_energy = energy_of_all(energy_of, sampled.group);
     return out;
 }
