@@ -55,6 +55,16 @@ class Slices {
         }
     }
 
+    // How long a metre is, and a line of the mean velocity.
+    void draw_metre(Canvas& canvas, double x, double y) const {
+        const double metre = pixels_ / length(field_.along_m[0]);
+        for (const double end : {x, x + metre})
+            canvas.line(end, y - 5, end, y + 5, {0.1, 0.1, 0.1});
+        canvas.line(x, y, x + metre, y, {0.1, 0.1, 0.1});
+        canvas.text(x, y + 23, "1 m; the longest line of a slice is the fastest, " +
+                                   to_digits(fastest_m_s_, 2) + " m/s at most", Align::left);
+    }
+
   private:
     int panel_height() const { return pixels_ * extent_.tall(); }
     // Place within the lattice, in cells.
@@ -75,7 +85,7 @@ class Slices {
             for (int x = 0; x < pixels_; ++x) raster.at(x0 + x, y0 + y) = with;
     }
 
-    void draw_panel(Canvas& canvas, int x0, double height_m, double strongest) const {
+    void draw_panel(Canvas& canvas, int x0, double height_m, double strongest) {
         const double edge = length(field_.along_m[0]);
         const auto layer = static_cast<std::int32_t>(std::floor((floor_m_ + height_m) / edge));
         Raster raster(pixels_ * extent_.wide(), panel_height(), {0.975, 0.975, 0.97});
@@ -101,11 +111,12 @@ class Slices {
     }
 
     // One line in so many cells, from the cell's middle; the fastest is as long as their distance.
-    void draw_velocities(Canvas& canvas, int x0, const std::vector<std::size_t>& here) const {
+    void draw_velocities(Canvas& canvas, int x0, const std::vector<std::size_t>& here) {
         const int apart = std::max(1, 18 / pixels_);
         double fastest = 0;
         for (const std::size_t n : here) fastest = std::max(fastest, level_speed(n));
         if (!(fastest > 0)) return;
+        fastest_m_s_ = std::max(fastest_m_s_, fastest);
         for (const std::size_t n : here) {
             const auto& [i, j, k] = field_.cell[n];
             if (i % apart != 0 || j % apart != 0) continue;
@@ -129,6 +140,7 @@ class Slices {
     double floor_m_;  // above the lattice's corner
     Extent extent_;
     int pixels_ = 1;  // along a cell's edge
+    double fastest_m_s_ = 0;  // of what was drawn
 };
 
 // Of the lowest cells that anything passes, above the lattice's corner.
@@ -173,7 +185,8 @@ void write_field_slices(const std::filesystem::path& folder,
         for (int n = 0; n < 220; ++n)
             canvas.rectangle(left + n, y, 1, 12, colour(ramp_colour(n / 219.0)));
         canvas.text(left, y + 29, "0", Align::left);
-        canvas.text(left + 220, y + 29, to_digits(strongest, 2), Align::right);
+        canvas.text(left + 220, y + 29, to_digits(strongest, 2) + " or more", Align::right);
+        slices.draw_metre(canvas, left + 300, y + 6);
         canvas.save();
     }
 }

@@ -97,8 +97,9 @@ TEST(ExportNotes, NameWhatWasCutToHalf) {
     }
     made.bodies[7].solid_m3 = 0;  // a pad
     EXPECT_EQ(notes_of(made), std::vector<std::string>{
-                                  "6 lay in others so deep that more than half of each was cut "
-                                  "off, as a share of its solid: object_6 350 %, object_5 300 %, "
+                                  "6 lay in others so deep that what was cut off their hulls, "
+                                  "which fill hollows, is more than half of their solids: "
+                                  "object_6 350 %, object_5 300 %, "
                                   "object_4 250 %, object_3 200 %, object_2 150 %, ..."});
     made.bodies.resize(1);
     EXPECT_EQ(notes_of(made), std::vector<std::string>{});
