@@ -116,6 +116,32 @@ void make_reproducible(const std::filesystem::path& path) {
 
 }  // namespace
 
+openvdb::math::Transform::Ptr transform_of(const Vec3& corner_m, const std::array<Vec3, 3>& along) {
+    // OpenVDB multiplies row vectors from the left: world = index * M. Its index (i, j, k) is the
+    // cell's middle already, ours its corner.
+    openvdb::Mat4d m = openvdb::Mat4d::identity();
+    for (int a = 0; a < 3; ++a) {
+        for (int d = 0; d < 3; ++d) m(a, d) = along[a][d];
+    }
+    for (int d = 0; d < 3; ++d) m(3, d) = 0.5 * (m(0, d) + m(1, d) + m(2, d)) + corner_m[d];
+    return openvdb::math::Transform::createLinearTransform(m);
+}
+
+void describe(openvdb::GridBase& grid, const std::string& name,
+              const openvdb::math::Transform::Ptr& transform, double voxel_m) {
+    grid.setName(name);
+    grid.setTransform(transform);
+    grid.setCreator("topple");
+    grid.insertMeta("voxel_size_m", openvdb::DoubleMetadata(voxel_m));
+}
+
+openvdb::MetaMap about_file(const std::string& schema) {
+    openvdb::MetaMap meta;
+    meta.insertMeta("creator", openvdb::StringMetadata("topple"));
+    meta.insertMeta("topple_schema", openvdb::StringMetadata(schema));
+    return meta;
+}
+
 void write_archive(const std::filesystem::path& path, const openvdb::GridPtrVec& grids,
                    const openvdb::MetaMap& meta) {
     errno = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -11,14 +12,10 @@
 namespace topple::vdb {
 
 openvdb::math::Transform::Ptr VoxelScene::Grids::transform() const {
-    // OpenVDB multiplies row vectors from the left: world = index * M. Its index (i, j, k) is the
-    // voxel's centre already, ours its corner.
-    openvdb::Mat4d m = openvdb::Mat4d::identity();
-    for (int a = 0; a < 3; ++a) {
-        for (int d = 0; d < 3; ++d) m(a, d) = frame.grid_from_input[a][d] * frame.voxel_m;
-    }
-    for (int d = 0; d < 3; ++d) m(3, d) = 0.5 * (m(0, d) + m(1, d) + m(2, d)) + frame.origin_m[d];
-    return openvdb::math::Transform::createLinearTransform(m);
+    std::array<Vec3, 3> along = frame.grid_from_input;
+    for (Vec3& axis : along)
+        for (double& v : axis) v *= frame.voxel_m;
+    return transform_of(frame.origin_m, along);
 }
 
 void VoxelScene::add_field(const std::string& name, std::span<const std::int32_t> i,
@@ -66,10 +63,7 @@ void VoxelScene::write(const std::filesystem::path& path) const {
     }
     openvdb::GridPtrVec grids;
     const auto add = [&](const std::string& name, const openvdb::GridBase::Ptr& grid) {
-        grid->setName(name);
-        grid->setTransform(g.transform());
-        grid->setCreator("topple");
-        grid->insertMeta("voxel_size_m", openvdb::DoubleMetadata(g.frame.voxel_m));
+        describe(*grid, name, g.transform(), g.frame.voxel_m);
         grids.push_back(grid);
     };
     const auto state =
@@ -82,9 +76,7 @@ void VoxelScene::write(const std::filesystem::path& path) const {
     add("object", object);
     for (const auto& [name, field] : g.fields) add(name, field);
 
-    openvdb::MetaMap meta;
-    meta.insertMeta("creator", openvdb::StringMetadata("topple"));
-    meta.insertMeta("topple_schema", openvdb::StringMetadata("topple.volume/1"));
+    openvdb::MetaMap meta = about_file("topple.volume/1");
     meta.insertMeta("voxel_size_m", openvdb::DoubleMetadata(g.frame.voxel_m));
     write_archive(path, grids, meta);
 }

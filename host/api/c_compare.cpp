@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -56,11 +55,7 @@ int topple_comparison_alignment(const topple_comparison* comparison, topple_alig
 int topple_comparison_thing(const topple_comparison* comparison, uint64_t index,
                             topple_compared_thing* thing, topple_status* status) {
     return guarded(status, [&] {
-        const std::vector<ComparedThing>& all = needed(comparison, "comparison").things;
-        if (index >= all.size())
-            throw Error(ErrorKind::usage, "index: there is no thing " + std::to_string(index) +
-                                              "; there are " + std::to_string(all.size()));
-        const ComparedThing& from = all[index];
+        const ComparedThing& from = item(needed(comparison, "comparison").things, index, "thing");
         topple_compared_thing out{};
         out.a = from.a;
         out.b = from.b;

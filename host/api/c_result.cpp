@@ -89,15 +89,6 @@ const Scene& scene_of(const topple_result* result) {
     return needed(result, "result").result.scene;
 }
 
-template <class Item>
-const Item& item(const std::vector<Item>& items, std::uint64_t index, const char* what) {
-    if (index >= items.size()) {
-        throw Error(ErrorKind::usage, std::string(what) + " " + std::to_string(index) +
-                                          ": there are " + std::to_string(items.size()));
-    }
-    return items[index];
-}
-
 // An item of one of the result's lists, as C has it.
 template <class Item>
 int give_item(const topple_result* result, const std::vector<Item> topple_result::*items,

@@ -93,11 +93,8 @@ int topple_session_thing(const topple_session* session, uint64_t index, topple_t
                          topple_status* status) {
     return guarded(status, [&] {
         const auto& updated = needed(session, "session").updated;
-        const std::uint64_t count = updated ? updated->things.size() : 0;
-        if (index >= count)
-            throw Error(ErrorKind::usage, "index: there is no thing " + std::to_string(index) +
-                                              "; there are " + std::to_string(count));
-        const Thing& from = updated->things[index];
+        static const std::vector<Thing> none;
+        const Thing& from = item(updated ? updated->things : none, index, "thing");
         topple_thing out{};
         out.id = from.id;
         out.object = from.object;

@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "topple/device.h"
 #include "topple/error.h"
@@ -73,6 +74,16 @@ template <class T>
 T* array(T* argument, const char* name, std::uint64_t rows, std::uint64_t each) {
     constexpr std::uint64_t all = ~std::uint64_t{0};
     return array(argument, name, each > 0 && rows > all / each ? all : rows * each);
+}
+
+// Throws Error(usage) where there are not so many.
+template <class Item>
+const Item& item(const std::vector<Item>& items, std::uint64_t index, const char* what) {
+    if (index >= items.size()) {
+        throw Error(ErrorKind::usage, std::string(what) + " " + std::to_string(index) +
+                                          ": there are " + std::to_string(items.size()));
+    }
+    return items[index];
 }
 
 // Of any version of a struct, sizeof is a multiple of its alignment: another size would cut a

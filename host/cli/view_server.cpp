@@ -87,7 +87,8 @@ class Served {
 
     // Takes what lies at the folder's path now, if that is another output.
     void look() {
-        struct stat there {}, here {};
+        struct stat there {
+        }, here{};
         if (stat(path_.c_str(), &there) == 0 && fstat(folder(), &here) == 0 &&
             (there.st_dev != here.st_dev || there.st_ino != here.st_ino)) {
             try {
@@ -156,11 +157,10 @@ class Listener : public std::enable_shared_from_this<Listener> {
         text_ = std::move(text);
         silent_ = 0;
         stream_.expires_after(std::chrono::seconds(30));
-        boost::asio::async_write(
-            stream_, boost::asio::buffer(text_),
-            [self = shared_from_this()](beast::error_code error, std::size_t) {
-                if (!error) self->wait();
-            });
+        boost::asio::async_write(stream_, boost::asio::buffer(text_),
+                                 [self = shared_from_this()](beast::error_code error, std::size_t) {
+                                     if (!error) self->wait();
+                                 });
     }
     void wait() {
         constexpr auto pause = std::chrono::milliseconds(200);
@@ -185,8 +185,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
 // One connection: requests one after another, until it is idle for long or says that it ends.
 class Session : public std::enable_shared_from_this<Session> {
   public:
-    Session(tcp::socket socket, Served& served)
-        : stream_(std::move(socket)), served_(served) {}
+    Session(tcp::socket socket, Served& served) : stream_(std::move(socket)), served_(served) {}
 
     void read() {
         parser_.emplace();
@@ -223,8 +222,8 @@ class Session : public std::enable_shared_from_this<Session> {
 
     void send_file(const Request& request, const std::string& name) {
         if (!plain_name(name)) return not_found(request);
-        const int fd = openat(served_.folder(), name.c_str(),
-                              O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        const int fd =
+            openat(served_.folder(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         if (fd < 0) return not_found(request);
         beast::file_posix file;
         file.native_handle(fd);  // which closes it

@@ -57,7 +57,8 @@ void add_cuts(const ExportSummary& summary, std::vector<std::string>& notes) {
                              [](const ExportedBody* body) { return body->lost_share(); });
     std::string note = std::to_string(cut.size());
     note +=
-        " lay in others so deep that what was cut off their hulls, which fill hollows, is more than "
+        " lay in others so deep that what was cut off their hulls, which fill hollows, is more "
+        "than "
         "half of their solids: ";
     for (std::size_t n = 0; n < std::min(cut.size(), most_named); ++n) {
         if (n > 0) note += ", ";

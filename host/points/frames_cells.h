@@ -44,7 +44,7 @@ struct Reading {
 struct alignas(64) CellSums {
     std::uint64_t key;
     std::array<std::uint64_t, 3> offset;  // sum of weight * offset
-    std::uint64_t weight : 48;      // sum of inverse variances, in 65535ths of the best reading's
+    std::uint64_t weight : 48;       // sum of inverse variances, in 65535ths of the best reading's
     std::uint64_t best_weight : 16;  // of the best reading here,
     std::uint32_t best_frame;        // and its frame, the first of equals
     std::uint32_t count;             // readings

@@ -40,11 +40,13 @@ struct Extent {
 
 class Slices {
   public:
-    Slices(const SpaceField& field, double floor_m, const Scene& scene)
-        : field_(field), scene_(scene), floor_m_(floor_m) {
+    Slices(const SpaceField& field, double floor_m, const SolidVoxels& solid)
+        : field_(field), floor_m_(floor_m) {
+        for (std::size_t n = 0; n < solid.x.size(); ++n)
+            solid_.push_back(cell_at({solid.x[n], solid.y[n], solid.z[n]}));
         for (const auto& [i, j, k] : field.cell) extent_.take(i, j);
-        pixels_ = std::max(1, std::min(panel_width / extent_.wide(),
-                                       tallest_panel / extent_.tall()));
+        pixels_ =
+            std::max(1, std::min(panel_width / extent_.wide(), tallest_panel / extent_.tall()));
     }
 
     int page_height() const { return top + panel_height() + below; }
@@ -61,18 +63,20 @@ class Slices {
         for (const double end : {x, x + metre})
             canvas.line(end, y - 5, end, y + 5, {0.1, 0.1, 0.1});
         canvas.line(x, y, x + metre, y, {0.1, 0.1, 0.1});
-        canvas.text(x, y + 23, "1 m; the longest line of a slice is the fastest, " +
-                                   to_digits(fastest_m_s_, 2) + " m/s at most", Align::left);
+        canvas.text(x, y + 23,
+                    "1 m; the longest line of a slice is the fastest, " +
+                        to_digits(fastest_m_s_, 2) + " m/s at most",
+                    Align::left);
     }
 
   private:
     int panel_height() const { return pixels_ * extent_.tall(); }
-    // Place within the lattice, in cells.
-    Vec3 cell_of(const Vec3& p) const {
-        Vec3 out{};
+    std::array<std::int32_t, 3> cell_at(const Vec3& p) const {
+        std::array<std::int32_t, 3> out{};
         const Vec3 from = minus(p, field_.corner_m);
         for (std::size_t a = 0; a < 3; ++a)
-            out[a] = dot(from, field_.along_m[a]) / dot(field_.along_m[a], field_.along_m[a]);
+            out[a] = static_cast<std::int32_t>(std::floor(
+                dot(from, field_.along_m[a]) / dot(field_.along_m[a], field_.along_m[a])));
         return out;
     }
     // The first axis goes to the right, the second upwards.
@@ -96,14 +100,8 @@ class Slices {
             here.push_back(n);
             fill(raster, i, j, colour(ramp_colour(field_.frequency[n] / strongest)));
         }
-        const SolidVoxels& solid = scene_.solid;
-        for (std::size_t n = 0; n < solid.x.size(); ++n) {
-            const Vec3 at = cell_of({solid.x[n], solid.y[n], solid.z[n]});
-            const auto i = static_cast<std::int32_t>(std::floor(at[0])),
-                       j = static_cast<std::int32_t>(std::floor(at[1]));
-            if (std::floor(at[2]) == layer && extent_.holds(i, j))
-                fill(raster, i, j, {0.62, 0.63, 0.64});
-        }
+        for (const auto& [i, j, k] : solid_)
+            if (k == layer && extent_.holds(i, j)) fill(raster, i, j, {0.62, 0.63, 0.64});
         canvas.image(x0, top, raster);
         canvas.text(x0, top - 8, to_places(height_m, 1) + " m above the floor", Align::left,
                     {.size = 13});
@@ -127,7 +125,8 @@ class Slices {
             const Vec3 velocity{v[0], v[1], v[2]};
             canvas.disc(x, y, 1.3, {0.05, 0.05, 0.05});
             canvas.line(x, y, x + reach * dot(velocity, topple::unit(field_.along_m[0])),
-                        y - reach * dot(velocity, topple::unit(field_.along_m[1])), {0.05, 0.05, 0.05});
+                        y - reach * dot(velocity, topple::unit(field_.along_m[1])),
+                        {0.05, 0.05, 0.05});
         }
     }
     double level_speed(std::size_t n) const {
@@ -136,10 +135,10 @@ class Slices {
     }
 
     const SpaceField& field_;
-    const Scene& scene_;
-    double floor_m_;  // above the lattice's corner
+    double floor_m_;                                  // above the lattice's corner
+    std::vector<std::array<std::int32_t, 3>> solid_;  // cells of solid voxels
     Extent extent_;
-    int pixels_ = 1;  // along a cell's edge
+    int pixels_ = 1;          // along a cell's edge
     double fastest_m_s_ = 0;  // of what was drawn
 };
 
@@ -167,9 +166,9 @@ void write_field_slices(const std::filesystem::path& folder,
         if (!kind || field.size() == 0) continue;
         double floor_m = lowest_m(field);
         if (walked != fields.end() && walked->second.size() > 0)
-            floor_m = lowest_m(walked->second) +
-                      dot(minus(walked->second.corner_m, field.corner_m), topple::unit(field.along_m[2]));
-        Slices slices(field, floor_m, scene);
+            floor_m = lowest_m(walked->second) + dot(minus(walked->second.corner_m, field.corner_m),
+                                                     topple::unit(field.along_m[2]));
+        Slices slices(field, floor_m, scene.solid);
         const double strongest = strongest_of(field);
         Canvas canvas(folder / ("field-" + name + ".png"), page_width, slices.page_height());
         canvas.text(left, 34, std::string(kind->words.arrows.title) + ", over space", Align::left,

@@ -57,7 +57,7 @@ struct DisturbanceKind {
     std::string (*doubt)(const ParseOptions& options) = nullptr;
     // Whether it is in this run, if it was asked for; null: always.
     bool (*acts)(const ParseOptions& options) = nullptr;
-    bool everyday = false;                      // such events have happened before the scan
+    bool everyday = false;  // such events have happened before the scan
     // What to note where this is left out and the scan has no ceiling.
     const char* left_out_below_none = nullptr;
 };

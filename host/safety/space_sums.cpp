@@ -15,9 +15,7 @@ void SpaceSums::add(const SpaceField& field, float share) {
         Passing all;
         const float passes = field.frequency[n];
         const auto& v = field.velocity_m_s[n];
-        all.add({passes,
-                 {passes * v[0], passes * v[1], passes * v[2]},
-                 passes * field.energy[n]},
+        all.add({passes, {passes * v[0], passes * v[1], passes * v[2]}, passes * field.energy[n]},
                 share);
         add(field.cell[n], all);
     }

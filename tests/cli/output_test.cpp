@@ -64,16 +64,15 @@ TEST_F(Output, beyond_the_limit_of_a_file) {
 TEST_F(Output, is_the_same_again) {
     put_plane("plane.xyz");
     for (const char* out : {"a", "b"})
-        ASSERT_EQ(run({"parse", "plane.xyz", "-o", out, "--quiet", "--glb", "--octomap",
-                       "--fields", "--threads", out[0] == 'a' ? "1" : "2"})
+        ASSERT_EQ(run({"parse", "plane.xyz", "-o", out, "--quiet", "--glb", "--octomap", "--fields",
+                       "--threads", out[0] == 'a' ? "1" : "2"})
                       .code,
                   0);
     succeeds("parse plane.xyz -o a --quiet");  // over all of these
     EXPECT_FALSE(std::filesystem::exists(in("a/fields.vdb")));
     succeeds("parse plane.xyz -o a --quiet --glb --octomap --fields --threads 1");
-    for (const std::string name :
-         {"points.ply", "solid.ply", "volume.vdb", "objects.glb", "map.bt", "landscapes.json",
-          "fields.vdb", "field-wind.png"})
+    for (const std::string name : {"points.ply", "solid.ply", "volume.vdb", "objects.glb", "map.bt",
+                                   "landscapes.json", "fields.vdb", "field-wind.png"})
         EXPECT_TRUE(bytes_of_file(in("a/" + name)) == bytes_of_file(in("b/" + name))) << name;
 }
 

@@ -25,8 +25,7 @@ TEST_F(SpaceFields, AreReadByOpenVdbWhereTheyAre) {
     write_space_fields(file_path, {{"human", field}});
     openvdb::io::File file(file_path.string());
     file.open();
-    const auto velocity =
-        openvdb::gridPtrCast<openvdb::Vec3SGrid>(file.readGrid("human_velocity"));
+    const auto velocity = openvdb::gridPtrCast<openvdb::Vec3SGrid>(file.readGrid("human_velocity"));
     const auto frequency =
         openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("human_frequency"));
     const auto energy = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("human_energy"));

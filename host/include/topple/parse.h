@@ -76,7 +76,7 @@ struct ParseOptions {
     double floor_amplification = 1;
     // How often the ground shakes there (read_hazard_curve), for how often each object falls.
     std::optional<HazardCurve> hazard;
-    double tolerable_J = 0.1;  // risk per event below which nothing needs to be done
+    double tolerable_J = 0.1;   // risk per event below which nothing needs to be done
     bool space_fields = false;  // ParseResult::space_fields is wanted
     // Meshes, OctoMaps and OpenVDB files are read by libraries of others. They read in a process of
     // their own, the program topple-reader, with limits of memory and time by the file's size: what

@@ -20,7 +20,8 @@ struct SpaceField {
     std::vector<std::array<std::int32_t, 3>> cell;  // ascending, each once
     // Mean over all that passes, m/s. Ways that cancel out leave little of it.
     std::vector<std::array<float, 3>> velocity_m_s;
-    // Of people: parts of bodies that pass in one walk. Of wind: the share of gales that blow there.
+    // Of people: parts of bodies that pass in one walk. Of wind: the share of gales that blow
+    // there.
     std::vector<float> frequency;
     // Mean over all that passes: m v^2 / 2 of parts of bodies, J; rho v^2 / 2 of wind, J/m^3.
     std::vector<float> energy;

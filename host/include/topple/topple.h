@@ -200,7 +200,7 @@ typedef struct topple_options {
     /* What things weigh by name or size: "household" or a file (topple/materials.h). NULL: all are
      * of density_kg_m3. */
     const char* materials;
-    uint32_t people; /* TOPPLE_ADULTS | TOPPLE_CHILDREN | ..: who is in the room; adults */
+    uint32_t people;      /* TOPPLE_ADULTS | TOPPLE_CHILDREN | ..: who is in the room; adults */
     int32_t space_fields; /* not 0: topple_result_write() writes fields.vdb, too */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);

@@ -66,9 +66,9 @@ scenes::RelationScore judged(const RoomParts& room, const Contacts& contacts,
         carried[object.back()].mass_kg += room.parts.bodies[p].mass_kg;
     }
     Scene scene;
-    scene.supports = graph::find_supports(
-        contacts.graph, contacts.pair_probability, object, carried,
-        graph::undersides(room.solids->cells(), object, carried.size()));
+    scene.supports =
+        graph::find_supports(contacts.graph, contacts.pair_probability, object, carried,
+                             graph::undersides(room.solids->cells(), object, carried.size()));
     for (const std::int32_t p : room.points.primitive)
         scene.points.object.push_back(p < 0 ? -1 : object[p]);
     return scenes::relation_score(room.world, scene, room.part);

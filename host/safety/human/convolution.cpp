@@ -369,12 +369,11 @@ void Convolution::add_level(double floor_m, const std::vector<bool>& component,
         if (all.empty() || all.back().key() != target.key()) all.push_back(target);
     }
     sort_unique(all);
-    sweep(floor_m, component, active_blocks(component), all, strikes,
-          [&](const Tile& tile) {
-              const std::vector<Passing> all = passing(tile);
-              offer_arrows(tile, all, floor_m, arrows);
-              if (space.made()) add_space(tile, all, floor_m, space);
-          });
+    sweep(floor_m, component, active_blocks(component), all, strikes, [&](const Tile& tile) {
+        const std::vector<Passing> passes = passing(tile);
+        offer_arrows(tile, passes, floor_m, arrows);
+        if (space.made()) add_space(tile, passes, floor_m, space);
+    });
     for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
         if (!target_of(v, object_of_cell_[v], floor_m, target)) continue;
         const auto found =

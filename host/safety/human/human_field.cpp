@@ -169,8 +169,8 @@ class Walkers {
 
         strikes_.assign(objects_.size(), no_strikes(secondary_));
         ArrowSample arrows;
-        SpaceSums space = options_.over_space ? SpaceSums({map_.x0, map_.y0, 0}, map_.cell_m)
-                                              : SpaceSums();
+        SpaceSums space =
+            options_.over_space ? SpaceSums({map_.x0, map_.y0, 0}, map_.cell_m) : SpaceSums();
         for (const Level& level : levels_)
             convolution_->add_level(level.floor_m, level.component, strikes_, out.exposure, arrows,
                                     space);

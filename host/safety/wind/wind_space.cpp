@@ -10,7 +10,8 @@
 namespace topple::safety {
 namespace {
 
-// Cubes of whole voxels around all that is solid, about cell_m wide, wider where that were too many.
+// Cubes of whole voxels around all that is solid, about cell_m wide, wider where that were too
+// many.
 struct Lattice {
     std::array<std::int32_t, 3> low{};    // its lowest voxel
     std::array<std::int32_t, 3> cells{};  // along each axis
@@ -62,8 +63,8 @@ class Column {
             for (std::size_t n = 0; n < some.size(); ++n) free |= bit(n);
             free &= ~columns_.solid(i, j, k);
             for (const std::array<double, 2>& way : ways_) {
-                const std::uint64_t reached = open_to_wind(columns_, i + 0.5, j + 0.5, k, free, i,
-                                                           j, way[0], way[1], lee_);
+                const std::uint64_t reached =
+                    open_to_wind(columns_, i + 0.5, j + 0.5, k, free, i, j, way[0], way[1], lee_);
                 for (std::size_t n = 0; n < some.size(); ++n)
                     if ((reached & bit(n)) != 0) some[n].add(gale(way), share());
             }
@@ -115,16 +116,14 @@ SpaceField wind_over_space(ThreadPool& threads, const SolidCells& solid, const C
     const auto tall = static_cast<std::size_t>(nk);
     std::vector<Passing> all(static_cast<std::size_t>(ni) * static_cast<std::size_t>(nj) * tall);
     const auto of_column = [&, nj = nj](std::int32_t a, std::int32_t b) {
-        return std::span(all).subspan(
-            (static_cast<std::size_t>(a) * static_cast<std::size_t>(nj) +
-             static_cast<std::size_t>(b)) *
-                tall,
-            tall);
+        return std::span(all).subspan((static_cast<std::size_t>(a) * static_cast<std::size_t>(nj) +
+                                       static_cast<std::size_t>(b)) *
+                                          tall,
+                                      tall);
     };
     threads.each(static_cast<std::size_t>(ni), 1, [&, nj = nj](std::size_t a) {
         for (std::int32_t b = 0; b < nj; ++b)
-            column.add(static_cast<std::int32_t>(a), b,
-                       of_column(static_cast<std::int32_t>(a), b));
+            column.add(static_cast<std::int32_t>(a), b, of_column(static_cast<std::int32_t>(a), b));
     });
     const double h = solid.voxel_m;
     SpaceSums sums({lattice.low[0] * h, lattice.low[1] * h, lattice.low[2] * h}, lattice.step * h);

@@ -15,8 +15,8 @@
 namespace topple::safety {
 
 // Which of the layers asked for, k and above by bit, have nothing solid within `voxels` upwind of a
-// point, given in voxels, in wind that blows along (dx, dy). Half-voxel steps; the first that counts
-// lies outside of the point's own column.
+// point, given in voxels, in wind that blows along (dx, dy). Half-voxel steps; the first that
+// counts lies outside of the point's own column.
 std::uint64_t open_to_wind(const Columns& columns, double x, double y, std::int32_t k,
                            std::uint64_t layers, std::int32_t own_i, std::int32_t own_j, double dx,
                            double dy, double voxels);

@@ -96,11 +96,11 @@ TEST(ExportNotes, NameWhatWasCutToHalf) {
         body.lost_m3 = n == 0 ? 0.01 : 0.01 * static_cast<double>(n + 1);
     }
     made.bodies[7].solid_m3 = 0;  // a pad
-    EXPECT_EQ(notes_of(made), std::vector<std::string>{
-                                  "6 lay in others so deep that what was cut off their hulls, "
-                                  "which fill hollows, is more than half of their solids: "
-                                  "object_6 350 %, object_5 300 %, "
-                                  "object_4 250 %, object_3 200 %, object_2 150 %, ..."});
+    EXPECT_EQ(notes_of(made),
+              std::vector<std::string>{"6 lay in others so deep that what was cut off their hulls, "
+                                       "which fill hollows, is more than half of their solids: "
+                                       "object_6 350 %, object_5 300 %, "
+                                       "object_4 250 %, object_3 200 %, object_2 150 %, ..."});
     made.bodies.resize(1);
     EXPECT_EQ(notes_of(made), std::vector<std::string>{});
     made.bodies[0].held = true;

@@ -76,7 +76,8 @@ PassesThere passes_at(const SpaceField& field, const Vec3& at) {
     return {field.frequency[n], std::hypot(v[0], v[1], v[2]), field.energy[n]};
 }
 
-// "The distribution of velocity above the table center, or any unreachable points, is zero" (5.1.2).
+// "The distribution of velocity above the table center, or any unreachable points, is zero"
+// (5.1.2).
 TEST_P(HumanField, OverSpaceIsNothingAboveTheMiddleOfATable) {
     test::Room room(0.025, {0, 0}, {5, 5});
     room.box(1.5, 3.5, 1.5, 3.5, 0.725, 0.75);  // two metres wide

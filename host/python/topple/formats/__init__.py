@@ -108,10 +108,7 @@ def convert(path, out, options=Options()):
     OUT.topple-notes.txt beside the file, where each parse of the scan takes them from. Returns the Converted. Raises topple.Error; out
     must not be there yet, and appears whole or not at all."""
     path, out = pathlib.Path(path), pathlib.Path(out)
-    if os.path.lexists(out):
-        raise wrong(out, 'is there already; name another, or delete it', 'usage')
-    if not out.absolute().parent.is_dir():
-        raise wrong(out, 'its folder is not there', 'usage')
+    _check_new(out)
     if out.suffix in ('.ply', '.pcd'):
         options = dataclasses.replace(options, ending=out.suffix)
     with opened(path, options) as converted:
@@ -134,10 +131,7 @@ def play(path, out, rate=1.0, topic=None):
     """Plays the depth frames of a bag of ROS at their pace, `rate` times as fast, into a folder that `topple live` may follow meanwhile.
     Reads in this process, without limits of memory and time. Returns the notes. Raises topple.Error; out must not be there yet."""
     path, out = pathlib.Path(path), pathlib.Path(out)
-    if os.path.lexists(out):
-        raise wrong(out, 'is there already; name another, or delete it', 'usage')
-    if not out.absolute().parent.is_dir():
-        raise wrong(out, 'its folder is not there', 'usage')
+    _check_new(out)
     if not (isinstance(rate, (int, float)) and 0 < rate < float('inf')):
         raise wrong(path, f'rate {rate}: expected a number above 0', 'usage')
     if format_of(path) is not ros_bag:
@@ -152,6 +146,14 @@ def play(path, out, rate=1.0, topic=None):
 
     with reading(path, ros_bag.FORMAT), np.errstate(all='ignore'):
         return [printable(note) for note in ros_bag.play(path, out, Options(topic=topic, isolate=False), wait)]
+
+
+def _check_new(out):
+    """That something may be made there."""
+    if os.path.lexists(out):
+        raise wrong(out, 'is there already; name another, or delete it', 'usage')
+    if not out.absolute().parent.is_dir():
+        raise wrong(out, 'its folder is not there', 'usage')
 
 
 def _keep_notes(kept, out, converted):
