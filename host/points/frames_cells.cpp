@@ -2,6 +2,7 @@
 #include "points/frames_cells.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace topple::geometry {
 namespace {
@@ -107,24 +108,15 @@ std::uint32_t CellTable::place_of(std::uint64_t key) {
 }
 
 void CellTable::add(std::span<const CellSums> sums, std::span<const std::uint32_t> which) {
-    for (const std::uint32_t s : which) cells_[place_of(sums[s].key)].add(sums[s]);
-}
-
-void CellTable::add(std::span<const Reading> readings, std::uint32_t frame) {
     constexpr std::size_t at_once = 32;
     std::array<std::uint32_t, at_once> place{};
-    for (; !readings.empty(); readings = readings.subspan(std::min(at_once, readings.size()))) {
-        const auto some = readings.first(std::min(at_once, readings.size()));
+    for (; !which.empty(); which = which.subspan(std::min(at_once, which.size()))) {
+        const auto some = which.first(std::min(at_once, which.size()));
         for (std::size_t n = 0; n < some.size(); ++n) {
-            // Mostly in the same cell as the one before.
-            if (n > 0 && some[n].key() == some[n - 1].key()) {
-                place[n] = place[n - 1];
-                continue;
-            }
-            place[n] = place_of(some[n].key());
+            place[n] = place_of(sums[some[n]].key);
             __builtin_prefetch(&cells_[place[n]]);
         }
-        for (std::size_t n = 0; n < some.size(); ++n) cells_[place[n]].add(some[n], frame);
+        for (std::size_t n = 0; n < some.size(); ++n) cells_[place[n]].add(sums[some[n]]);
     }
 }
 
@@ -138,47 +130,56 @@ void CellTable::grow() {
     }
 }
 
-void CellTables::add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool) {
+void CellTables::add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool,
+                     std::size_t most_bytes) {
     std::vector<std::array<std::vector<std::uint32_t>, shard_count>> of(parts.size());
     pool.each(parts.size(), 1, [&](std::size_t p) {
         for (std::size_t n = 0; n < parts[p].size(); ++n)
             of[p][shard_of(parts[p][n].key)].push_back(static_cast<std::uint32_t>(n));
     });
+    std::atomic<std::size_t> held = bytes();
     pool.each(shard_count, 1, [&](std::size_t shard) {
+        if (held > most_bytes) return;
+        const std::size_t before = shards[shard].bytes();
         for (std::size_t p = 0; p < parts.size(); ++p) shards[shard].add(parts[p], of[p][shard]);
+        held += shards[shard].bytes() - before;
     });
 }
 
-void WaitingReadings::add(const Reading& reading, std::uint32_t frame) {
-    const std::uint64_t key = reading.key(), cube = CellTable::cube_of(key);
-    if (!last_ || cube != cube_ || last_->back().frame != frame) {
-        cube_ = cube;
-        last_ = &runs_[CellTables::shard_of(key)];
-        last_->push_back({static_cast<std::uint32_t>(readings_.size()), 0, frame});
-    }
-    ++last_->back().count;
-    readings_.push_back(reading);
-}
-
-void WaitingReadings::add_to(CellTable& table, std::size_t shard) const {
-    const std::span<const Reading> all = readings_;
-    const std::vector<Run>& runs = runs_[shard];
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-        // The next run lies anywhere.
-        if (r + 1 < runs.size()) {
-            const auto next = std::as_bytes(all.subspan(runs[r + 1].first, runs[r + 1].count));
-            constexpr std::size_t line = 64, most = 32 * line;
-            for (std::size_t at = 0; at < std::min(next.size(), most); at += line)
-                __builtin_prefetch(&next[at]);
+void NeighbourSums::add(const RowReadings& row, const std::uint8_t* rgb, std::uint32_t frame,
+                        std::vector<CellSums>& sums, std::uint64_t& outside) {
+    Home left;
+    for (std::size_t u = 0; u < above_.size(); ++u) {
+        Home& above = above_[u];
+        if (row.kept[u] == 0 || row.inside[u] == 0) {
+            outside += row.kept[u];
+            left = above = {};
+            continue;
         }
-        table.add(all.subspan(runs[r].first, runs[r].count), runs[r].frame);
+        std::array<std::uint64_t, 3> index{};
+        std::array<std::uint32_t, 3> part{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            index[a] = static_cast<std::uint32_t>(row.cell[a][u]);
+            part[a] = static_cast<std::uint32_t>(row.part[a][u]);
+        }
+        const std::uint64_t key = key_of(index);
+        const std::size_t at = key == left.key    ? left.at
+                               : key == above.key ? above.at
+                                                  : sums.size();
+        if (at == sums.size()) {
+            CellSums none{};
+            none.key = key;
+            none.best_frame = frame;
+            sums.push_back(none);
+        }
+        sums[at].add(row.weight[u], part);
+        left = above = {key, at};
+        if (!rgb) continue;
+        const std::uint8_t* const pixel = rgb + 3 * u;
+        if ((pixel[0] | pixel[1] | pixel[2]) == 0) continue;  // not known
+        const std::uint32_t coarse = (row.weight[u] + 255) >> 8;
+        sums[at].add_colour({coarse * pixel[0], coarse * pixel[1], coarse * pixel[2]}, coarse);
     }
-}
-
-void WaitingReadings::clear() {
-    readings_.clear();
-    for (auto& runs : runs_) runs.clear();
-    last_ = nullptr;
 }
 
 std::size_t CellTable::bytes() const {

@@ -28,15 +28,6 @@ inline std::int64_t index_in(std::uint64_t key, std::size_t axis) {
     return static_cast<std::int64_t>(key >> key_shift[axis] & key_mask);
 }
 
-// One reading, where it waits for its table: 20 bytes.
-struct Reading {
-    std::array<std::uint32_t, 2> key_halves{};  // of its cell, the lower one first
-    std::array<std::uint16_t, 3> part{};        // 65536ths of the cell, from its lowest corner
-    std::uint16_t weight = 0;                   // inverse variance, in 65535ths of the best one's
-    std::uint32_t rgb = 0;                      // 8 bits each, red lowest; 0 where it isn't known
-    std::uint64_t key() const { return std::uint64_t{key_halves[1]} << 32 | key_halves[0]; }
-};
-
 // What the readings in one cell sum up to. Integers, so that the sums do not depend on the order in
 // which threads or frames arrive. Offsets are 1 / 65536 of a cell from its lowest corner.
 // Not initialised by itself, so that millions of them may be made where each is written. A cache
@@ -53,25 +44,17 @@ struct alignas(64) CellSums {
     std::array<std::uint32_t, 3> colour;
     std::uint32_t colour_weight;
     void add(const CellSums& other);
-    void add(const Reading& reading, std::uint32_t frame);
+    // A reading of the frame best_frame at `part`, 65536ths of the cell from its lowest corner.
+    void add(std::uint32_t reading_weight, const std::array<std::uint32_t, 3>& part);
     void add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights);
 };
 static_assert(sizeof(CellSums) == 64);
 
-inline void CellSums::add(const Reading& reading, std::uint32_t frame) {
-    const std::uint32_t w = reading.weight;
-    for (std::size_t a = 0; a < 3; ++a) offset[a] += std::uint64_t{w} * reading.part[a];
-    weight += w;
+inline void CellSums::add(std::uint32_t reading_weight, const std::array<std::uint32_t, 3>& part) {
+    for (std::size_t a = 0; a < 3; ++a) offset[a] += std::uint64_t{reading_weight} * part[a];
+    weight += reading_weight;
+    if (reading_weight > best_weight) best_weight = reading_weight;
     ++count;
-    if (w > best_weight || (w == best_weight && frame < best_frame)) {
-        best_weight = w;
-        best_frame = frame;
-    }
-    if (reading.rgb == 0) return;
-    const std::uint32_t coarse = (w + 255) >> 8;
-    add_colour({coarse * (reading.rgb & 0xFF), coarse * (reading.rgb >> 8 & 0xFF),
-                coarse * (reading.rgb >> 16 & 0xFF)},
-               coarse);
 }
 
 // Of a cell's readings along one axis, in cell_parts from its lowest corner.
@@ -100,8 +83,6 @@ class CellTable {
         return key >> 5 & 0xFFFFu * (1 + (1ull << 21) + (1ull << 42));
     }
     void add(std::span<const CellSums> sums, std::span<const std::uint32_t> which);
-    // Readings of one frame.
-    void add(std::span<const Reading> readings, std::uint32_t frame);
     const Grown<CellSums>& cells() const { return cells_; }
     const Grown<Block>& blocks() const { return blocks_; }
     // That it holds, and that sorting its cells takes besides.
@@ -142,31 +123,32 @@ struct CellTables {
         return CellTable::cube_of(key) * 0xD6E8FEB86659FD93u >> 56;
     }
     std::array<CellTable, shard_count> shards;
-    // In order, whatever the number of threads.
-    void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool);
+    // In order, whatever the number of threads. Ends early where they come to hold more than
+    // most_bytes.
+    void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool,
+             std::size_t most_bytes = SIZE_MAX);
     // All cells by ascending key; as long as nothing is added.
     CellPlaces sorted(ThreadPool& pool) const;
     std::size_t bytes() const;
 };
 
-// Readings of some rows of frames, in the order in which they came, and the tables they go to.
-class WaitingReadings {
+// Sums up readings of neighbouring pixels that lie in one cell, so that tables are asked for each
+// few of them once.
+class NeighbourSums {
   public:
-    void add(const Reading& reading, std::uint32_t frame);
-    std::size_t size() const { return readings_.size(); }
-    std::size_t bytes() const { return readings_.capacity() * sizeof(Reading); }
-    void add_to(CellTable& table, std::size_t shard) const;
-    void clear();
+    explicit NeighbourSums(std::size_t width) : above_(width) {}
+    // The next row of a frame: appends to `sums`, and counts the readings beyond the grid's reach.
+    // rgb: of its pixels, or null.
+    void add(const RowReadings& row, const std::uint8_t* rgb, std::uint32_t frame,
+             std::vector<CellSums>& sums, std::uint64_t& outside);
 
   private:
-    // Readings of one frame in one cube, one after the other.
-    struct Run {
-        std::uint32_t first = 0, count = 0, frame = 0;
+    // The cell that a pixel's reading lies in, and its place among the sums. No key is 0.
+    struct Home {
+        std::uint64_t key = 0;
+        std::size_t at = 0;
     };
-    std::vector<Reading> readings_;
-    std::array<std::vector<Run>, CellTables::shard_count> runs_;
-    std::vector<Run>* last_ = nullptr;  // holds the run of the reading before,
-    std::uint64_t cube_ = 0;            // which lies in this cube
+    std::vector<Home> above_;  // of the row before
 };
 
 struct FrameFusion::Cells {
@@ -177,7 +159,7 @@ struct FrameFusion::Cells {
     BackProjection projection;
     CellTables tables;
     Witnesses witnesses;
-    std::array<WaitingReadings, block_count> waiting;
+    std::array<std::vector<CellSums>, block_count> waiting;
     void flush();  // what waits to the tables, unless they come to hold more than most_bytes
     std::size_t most_bytes = SIZE_MAX;
     std::vector<Vec3> viewpoints;

@@ -2,7 +2,6 @@
 #include "points/frames_fusion.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -14,9 +13,9 @@ namespace topple::geometry {
 
 namespace {
 
-// Readings that wait for their tables: of many frames at a time, since most of them look at the
-// same cells, and a table's memory is far from one frame to the next.
-constexpr std::size_t most_waiting = std::size_t{1} << 22;
+// Sums that wait for their tables: of many frames at a time, since most of them look at the same
+// cells, and a table's memory is far from one frame to the next.
+constexpr std::size_t most_waiting = std::size_t{1} << 20;
 
 void check(const Intrinsics& k, double cell_m) {
     const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
@@ -47,34 +46,6 @@ void check(const DepthFrame& frame, const Intrinsics& k, std::size_t number) {
         refuse("its pose is not finite; leave the frame out");
 }
 
-// Hands on the readings of a row, and counts those outside. rgb: of its pixels, or null.
-void hand_on(const RowReadings& row, const std::uint8_t* rgb, std::uint32_t frame,
-             WaitingReadings& waiting, std::uint64_t& outside) {
-    for (std::size_t u = 0; u < row.kept.size(); ++u) {
-        if (row.kept[u] == 0) continue;
-        if (row.inside[u] == 0) {
-            ++outside;
-            continue;
-        }
-        std::array<std::uint64_t, 3> index{};
-        Reading reading;
-        for (std::size_t a = 0; a < 3; ++a) {
-            index[a] = static_cast<std::uint32_t>(row.cell[a][u]);
-            reading.part[a] = static_cast<std::uint16_t>(row.part[a][u]);
-        }
-        const std::uint64_t key = key_of(index);
-        reading.key_halves = {static_cast<std::uint32_t>(key),
-                              static_cast<std::uint32_t>(key >> 32)};
-        reading.weight = static_cast<std::uint16_t>(row.weight[u]);
-        if (rgb) {
-            const std::uint8_t* const pixel = rgb + 3 * u;
-            reading.rgb = std::uint32_t{pixel[0]} | std::uint32_t{pixel[1]} << 8 |
-                          std::uint32_t{pixel[2]} << 16;
-        }
-        waiting.add(reading, frame);
-    }
-}
-
 }  // namespace
 
 FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned threads)
@@ -98,11 +69,12 @@ void FrameFusion::add(const DepthFrame& frame) {
         const auto first = static_cast<std::uint32_t>(block * k.height / Cells::block_count);
         const auto last = static_cast<std::uint32_t>((block + 1) * k.height / Cells::block_count);
         RowReadings row(k.width);
+        NeighbourSums neighbours(k.width);
         for (std::uint32_t v = first; v < last; ++v) {
             c.projection.row(frame, v, row);
             const std::uint8_t* rgb =
                 frame.rgb.empty() ? nullptr : frame.rgb.data() + std::size_t{3} * v * k.width;
-            hand_on(row, rgb, number, c.waiting[block], c.outside[block]);
+            neighbours.add(row, rgb, number, c.waiting[block], c.outside[block]);
         }
     };
     // A pool without threads of its own hands out all blocks at once.
@@ -110,7 +82,7 @@ void FrameFusion::add(const DepthFrame& frame) {
         for (std::uint64_t block = begin; block < end; ++block) add_rows(block);
     });
     std::size_t waiting = 0;
-    for (const WaitingReadings& block : c.waiting) waiting += block.size();
+    for (const std::vector<CellSums>& block : c.waiting) waiting += block.size();
     if (waiting >= most_waiting) c.flush();
 }
 
@@ -127,17 +99,9 @@ void FrameFusion::flush() {
 }
 
 void FrameFusion::Cells::flush() {
-    // Table by table, so that what is held at the end exceeds the limit by little, however much
-    // waits.
-    std::atomic<std::size_t> held = tables.bytes();
-    pool.each(CellTables::shard_count, 1, [&](std::size_t shard) {
-        if (held > most_bytes) return;
-        CellTable& table = tables.shards[shard];
-        const std::size_t before = table.bytes();
-        for (const WaitingReadings& block : waiting) block.add_to(table, shard);
-        held += table.bytes() - before;
-    });
-    for (WaitingReadings& block : waiting) block.clear();
+    tables.add(std::vector<std::span<const CellSums>>(waiting.begin(), waiting.end()), pool,
+               most_bytes);
+    for (std::vector<CellSums>& block : waiting) block.clear();
 }
 
 FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
