@@ -23,22 +23,51 @@ static_assert(int{TOPPLE_CHANGE_FOUND} == int(Change::found) &&
               int{TOPPLE_CHANGE_LOST} == int(Change::lost) &&
               int{TOPPLE_CHANGE_GONE} == int(Change::gone));
 
+namespace {
+
+// made: of the options; Session.
+template <class Made>
+int make_session(const topple_options* options, uint64_t max_frame_bytes, int keep_gone,
+                 topple_session** session, topple_status* status, const Made& made) {
+    return guarded(status, [&] {
+        needed(session, "session") = nullptr;
+        auto out = std::make_unique<topple_session>();
+        out->options = known(options, default_options(), "options");
+        SessionOptions wanted;
+        wanted.parse = parse_options(out->options);
+        wanted.forget_gone = keep_gone == 0;
+        if (max_frame_bytes > 0) wanted.max_frame_bytes = max_frame_bytes;
+        out->session = std::make_unique<Session>(made(std::move(wanted)));
+        *session = out.release();
+    });
+}
+
+}  // namespace
+
 int topple_session_create(const topple_intrinsics* depth, const topple_intrinsics* colour,
                           const topple_options* options, uint64_t max_frame_bytes, int keep_gone,
                           topple_session** session, topple_status* status) {
-    return guarded(status, [&] {
-        needed(session, "session") = nullptr;
-        auto made = std::make_unique<topple_session>();
-        made->options = known(options, default_options(), "options");
-        SessionOptions wanted;
-        wanted.parse = parse_options(made->options);
-        wanted.forget_gone = keep_gone == 0;
-        if (max_frame_bytes > 0) wanted.max_frame_bytes = max_frame_bytes;
+    const auto made = [&](SessionOptions wanted) {
         std::optional<Intrinsics> seen;
         if (colour) seen = intrinsics_of(*colour);
-        made->session = std::make_unique<Session>(intrinsics_of(needed(depth, "depth")), seen,
-                                                  std::move(wanted));
-        *session = made.release();
+        return Session(intrinsics_of(needed(depth, "depth")), seen, std::move(wanted));
+    };
+    return make_session(options, max_frame_bytes, keep_gone, session, status, made);
+}
+
+int topple_session_resume(const char* file, const topple_options* options, uint64_t max_frame_bytes,
+                          int keep_gone, topple_session** session, topple_status* status) {
+    const auto made = [&](SessionOptions wanted) {
+        return Session::resume(std::filesystem::path(&needed(file, "file")), std::move(wanted));
+    };
+    return make_session(options, max_frame_bytes, keep_gone, session, status, made);
+}
+
+int topple_session_checkpoint(const topple_session* session, const char* file,
+                              topple_status* status) {
+    return guarded(status, [&] {
+        needed(session, "session")
+            .session->checkpoint(std::filesystem::path(&needed(file, "file")));
     });
 }
 

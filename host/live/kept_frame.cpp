@@ -5,7 +5,8 @@
 
 #include <memory>
 #include <new>
-#include <stdexcept>
+
+#include "topple/error.h"
 
 namespace topple::live {
 namespace {
@@ -49,7 +50,7 @@ std::vector<std::uint8_t> Packed::unpacked() const {
     if (!decompressor) throw std::bad_alloc();
     if (libdeflate_deflate_decompress(decompressor.get(), packed_.data(), packed_.size(),
                                       out.data(), out.size(), nullptr) != LIBDEFLATE_SUCCESS)
-        throw std::logic_error("a kept frame can't be unpacked");
+        throw Error(ErrorKind::input, "a kept frame can't be unpacked: it is damaged");
     return out;
 }
 

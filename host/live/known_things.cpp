@@ -98,12 +98,6 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
         before_of[static_cast<std::size_t>(ground - scene.objects.begin())] = was;
         taken[was] = true;
     }
-    use_best(by_pixels(showed_, shown), before_of, taken);
-    Showed shows;
-    for (const auto& [frame, pixels] : shown) shows[frame] = pixels.object;
-    const std::vector<double> gone = shares(before_.size(), showed_, shown, &Shown::gone);
-    const std::vector<double> came = shares(count, shows, shown, &Shown::came);
-
     const auto moved_m = [&](std::size_t b, std::size_t n) {
         return length(minus(scene.objects[n].box_middle_m, before_[b].middle_m));
     };
@@ -113,6 +107,19 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
                std::abs(object.mass_kg - before_[b].mass_kg) <=
                    alike_mass * std::max(object.mass_kg, before_[b].mass_kg);
     };
+    use_best(by_pixels(showed_, shown), before_of, taken);
+    // What no pixel shows, by its place.
+    std::vector<Match> in_place;
+    for (std::size_t b = 0; b < before_.size(); ++b)
+        for (std::size_t n = 0; n < count; ++n)
+            if (!taken[b] && before_of[n] == none && moved_m(b, n) < aside_m && like(b, n))
+                in_place.push_back({-moved_m(b, n), b, n});
+    use_best(std::move(in_place), before_of, taken);
+    Showed shows;
+    for (const auto& [frame, pixels] : shown) shows[frame] = pixels.object;
+    const std::vector<double> gone = shares(before_.size(), showed_, shown, &Shown::gone);
+    const std::vector<double> came = shares(count, shows, shown, &Shown::came);
+
     std::vector<Match> elsewhere;
     for (std::size_t b = 0; b < before_.size(); ++b)
         for (std::size_t n = 0; n < count; ++n)

@@ -29,6 +29,9 @@ class KnownThings {
   public:
     // What the objects are, and what of those before has vanished.
     std::vector<Thing> name(const Scene& scene, const ShownObjects& shown);
+    // For both ways (core/fields.h). pixels: of a frame.
+    template <class Io, class Self>
+    static void fields(Io& io, Self& known, std::size_t pixels);
 
   private:
     struct Before {

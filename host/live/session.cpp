@@ -11,9 +11,8 @@
 
 #include "core/checksum.h"
 #include "core/random.h"
+#include "live/checkpoint.h"
 #include "live/coarse_frame.h"
-#include "live/kept_frame.h"
-#include "live/known_things.h"
 #include "live/seen_through.h"
 #include "points/caller_frames.h"
 #include "points/formats/rigid_pose.h"
@@ -64,8 +63,12 @@ double apart(const Mat4& a, const Mat4& b) {
 
 class Session::State {
   public:
-    State(const Intrinsics& k, const std::optional<Intrinsics>& colour, SessionOptions options)
-        : k_(k), colour_(colour), options_(std::move(options)) {
+    State(live::Checkpoint from, SessionOptions options)
+        : k_(from.depth),
+          colour_(from.colour),
+          options_(std::move(options)),
+          frames_(std::move(from.frames)),
+          remembered_(std::move(from.remembered)) {
         check_options(options_.parse);
         if (!options_.parse.cache_file.empty())
             throw Error(ErrorKind::usage,
@@ -75,52 +78,57 @@ class Session::State {
         if (!options_.parse.device) options_.parse.device = device::open_device("auto");
         options_.parse.coordinates = true;  // things are told by them
         threads_ = options_.parse.device->threads().threads();
+        for (const auto& [frame, kept] : frames_.kept) bytes_ += kept.frame->bytes();
+        changes_ = frames_.kept.size();
+        keep_to_limit();
     }
 
     FrameId add(const FrameView& view, const Mat4& pose) {
-        const FramesView given = one_frame(k_, colour_, view, pose, name_of(next_));
+        FrameId& next = frames_.next;  // of the producer alone, as is `last`
+        const FramesView given = one_frame(k_, colour_, view, pose, name_of(next));
         // As parse() takes it: checked, its colours as the depth camera sees them.
         const DepthFrame frame = CallerFrames(given).load_coloured(0);
         if (std::ranges::all_of(frame.depth, [](std::uint16_t d) { return d == 0; }))
-            throw Error(ErrorKind::input, name_of(next_) + ": it has no readings");
+            throw Error(ErrorKind::input, name_of(next) + ": it has no readings");
         Checksum sum;
         sum.add(frame.depth.data(), frame.depth.size() * sizeof(std::uint16_t));
         sum.add(frame.camera_to_world.data(), sizeof(frame.camera_to_world));
-        if (sum.value() == last_)
-            throw Error(ErrorKind::input, name_of(next_) + ": it is the frame before once more");
+        if (sum.value() == frames_.last)
+            throw Error(ErrorKind::input, name_of(next) + ": it is the frame before once more");
         auto kept = std::make_shared<const live::KeptFrame>(frame, k_.width);
         const std::lock_guard lock(frames_mutex_);
-        last_ = sum.value();
+        frames_.last = sum.value();
         bytes_ += kept->bytes();
-        frames_[next_] = {std::move(kept), pose};
+        frames_.kept[next] = {std::move(kept), pose};
         ++changes_;
-        while (bytes_ > options_.max_frame_bytes && frames_.size() > 1) drop_least_missed();
-        return next_++;
+        keep_to_limit();
+        return next++;
     }
     void correct(const std::map<FrameId, Mat4>& poses) {
         for (auto [frame, pose] : poses) {
-            if (frame >= next_) no_such(frame);
+            if (frame >= frames_.next) no_such(frame);
             if (const auto fault = io::make_rigid(pose))
                 throw Error(ErrorKind::input, name_of(frame) + ": camera_to_world: " + *fault);
         }
         const std::lock_guard lock(frames_mutex_);
         for (const auto& [frame, pose] : poses) {
-            const auto kept = frames_.find(frame);
-            if (kept == frames_.end() || kept->second.pose == pose) continue;
+            const auto kept = frames_.kept.find(frame);
+            if (kept == frames_.kept.end() || kept->second.pose == pose) continue;
             kept->second.pose = pose;
             ++changes_;
         }
     }
     void forget(FrameId frame) {
         const std::lock_guard lock(frames_mutex_);
-        const auto kept = frames_.find(frame);
-        if (kept == frames_.end()) no_such(frame);
+        const auto kept = frames_.kept.find(frame);
+        if (kept == frames_.kept.end()) no_such(frame);
         drop(kept);
     }
+    const Intrinsics& intrinsics() const { return k_; }
     std::vector<FrameId> frames() const {
         const std::lock_guard lock(frames_mutex_);
         std::vector<FrameId> out;
-        for (const auto& [frame, kept] : frames_) out.push_back(frame);
+        for (const auto& [frame, kept] : frames_.kept) out.push_back(frame);
         return out;
     }
     std::uint64_t frame_bytes() const {
@@ -140,10 +148,12 @@ class Session::State {
             *found = *last;
             std::erase_if(found->things, [](const Thing& t) { return t.object < 0; });
             for (Thing& thing : found->things) thing = {.id = thing.id, .object = thing.object};
-            publish(found);
+            const std::lock_guard lock(scene_mutex_);
+            scene_ = found;
             return found;
         }
-        const Passed passed = passed_through(frames, last ? last->frames.back() + 1 : 0);
+        live::Remembered remembered = this->remembered();
+        const Passed passed = passed_through(frames, remembered.poses);
         FramesView view;
         view.intrinsics = k_;
         view.source = options_.source;
@@ -156,12 +166,23 @@ class Session::State {
         };
         found->result = std::make_shared<const ParseResult>(parse(view, options_.parse));
         auto labeller = std::make_shared<const FrameLabeller>(*found->result);
-        found->things = known_.name(found->result->scene, shown(frames, passed, *labeller));
+        found->things =
+            remembered.things.name(found->result->scene, shown(frames, passed, *labeller));
+        remembered.poses.clear();
+        for (const auto& [frame, kept] : frames) remembered.poses[frame] = kept.pose;
         parsed_changes_ = changes;
-        parsed_poses_.clear();
-        for (const auto& [frame, kept] : frames) parsed_poses_[frame] = kept.pose;
-        publish(found, std::move(labeller));
+        const std::lock_guard lock(scene_mutex_);
+        scene_ = found;
+        labeller_ = std::move(labeller);
+        remembered_ = std::move(remembered);
         return found;
+    }
+    void checkpoint(const std::filesystem::path& file) const {
+        const auto frames = [this] {
+            const std::lock_guard lock(frames_mutex_);
+            return frames_;
+        };
+        live::Checkpoint{k_, colour_, frames(), remembered()}.write(file);
     }
     std::shared_ptr<const LiveScene> scene() const {
         const std::lock_guard lock(scene_mutex_);
@@ -188,25 +209,24 @@ class Session::State {
     }
 
   private:
-    struct Kept {
-        std::shared_ptr<const live::KeptFrame> frame;
-        Mat4 pose{};  // as it was given
-    };
-    using Frames = std::map<FrameId, Kept>;
+    using Frames = std::map<FrameId, live::PosedFrame>;
 
     [[noreturn]] static void no_such(FrameId frame) {
         throw Error(ErrorKind::usage, "session: there is no " + name_of(frame));
     }
     void drop(Frames::iterator kept) {
         bytes_ -= kept->second.frame->bytes();
-        frames_.erase(kept);
+        frames_.kept.erase(kept);
         ++changes_;
+    }
+    void keep_to_limit() {
+        while (bytes_ > options_.max_frame_bytes && frames_.kept.size() > 1) drop_least_missed();
     }
     // The earlier of the two whose cameras are nearest to one another: what is new stays.
     void drop_least_missed() {
-        auto least = frames_.begin();
+        auto least = frames_.kept.begin();
         double nearest = INFINITY;
-        for (auto at = frames_.begin(), next = std::next(at); next != frames_.end(); ++at, ++next) {
+        for (auto at = least, next = std::next(at); next != frames_.kept.end(); ++at, ++next) {
             const double far = apart(at->second.pose, next->second.pose);
             if (far >= nearest) continue;
             nearest = far;
@@ -216,23 +236,27 @@ class Session::State {
     }
     std::pair<Frames, std::uint64_t> snapshot() const {
         const std::lock_guard lock(frames_mutex_);
-        return {frames_, changes_};
+        return {frames_.kept, changes_};
+    }
+    live::Remembered remembered() const {
+        const std::lock_guard lock(scene_mutex_);
+        return remembered_;
     }
     // The frames as they tell of things, and what others see through of each: later ones; and of
-    // those from `first_new` on, earlier ones.
+    // those after the ones of the last update, whose poses these are, earlier ones.
     struct Passed {
         std::vector<DepthFrame> seen;
         std::vector<live::Gone> gone, came;
     };
-    Passed passed_through(const Frames& frames, FrameId first_new) const {
+    Passed passed_through(const Frames& frames, const std::map<FrameId, Mat4>& poses) const {
+        const FrameId first_new = poses.empty() ? 0 : poses.rbegin()->first + 1;
         Passed out;
         std::size_t old = 0;
         std::vector<std::optional<Mat4>> earlier;
         for (const auto& [frame, kept] : frames) {
             old += frame < first_new;
-            const auto parsed = parsed_poses_.find(frame);
-            earlier.push_back(parsed == parsed_poses_.end() ? std::nullopt
-                                                            : std::optional(parsed->second));
+            const auto parsed = poses.find(frame);
+            earlier.push_back(parsed == poses.end() ? std::nullopt : std::optional(parsed->second));
             out.seen.push_back(coarse_.of(kept.frame->depth_frame()));
             out.seen.back().camera_to_world = kept.pose;
         }
@@ -271,12 +295,6 @@ class Session::State {
         }
         return out;
     }
-    void publish(std::shared_ptr<const LiveScene> scene,
-                 std::shared_ptr<const FrameLabeller> labeller = nullptr) {
-        const std::lock_guard lock(scene_mutex_);
-        scene_ = std::move(scene);
-        if (labeller) labeller_ = std::move(labeller);
-    }
 
     const Intrinsics k_;
     const live::Coarse coarse_{k_};
@@ -285,24 +303,26 @@ class Session::State {
     unsigned threads_ = 0;
 
     mutable std::mutex frames_mutex_;
-    Frames frames_;
+    live::KeptFrames frames_;
     std::uint64_t bytes_ = 0, changes_ = 0;
-    FrameId next_ = 0;        // of the producer alone, as is
-    Checksum::Value last_{};  // the frame added last
 
     std::mutex update_mutex_;
-    live::KnownThings known_;
     std::uint64_t parsed_changes_ = 0;
-    std::map<FrameId, Mat4> parsed_poses_;  // as of the last update
 
     mutable std::mutex scene_mutex_;
+    live::Remembered remembered_;
     std::shared_ptr<const LiveScene> scene_;
     std::shared_ptr<const FrameLabeller> labeller_;
 };
 
 Session::Session(const Intrinsics& intrinsics, const std::optional<Intrinsics>& colour_intrinsics,
                  SessionOptions options)
-    : state_(std::make_unique<State>(intrinsics, colour_intrinsics, std::move(options))) {}
+    : state_(std::make_unique<State>(live::Checkpoint{intrinsics, colour_intrinsics, {}, {}},
+                                     std::move(options))) {}
+Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Session Session::resume(const std::filesystem::path& file, SessionOptions options) {
+    return Session(std::make_unique<State>(live::Checkpoint::read(file), std::move(options)));
+}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
@@ -316,6 +336,9 @@ void Session::correct(const std::map<FrameId, Mat4>& camera_to_world) {
 void Session::forget(FrameId frame) {
     state_->forget(frame);
 }
+const Intrinsics& Session::intrinsics() const {
+    return state_->intrinsics();
+}
 std::vector<FrameId> Session::frames() const {
     return state_->frames();
 }
@@ -324,6 +347,9 @@ std::uint64_t Session::frame_bytes() const {
 }
 std::shared_ptr<const LiveScene> Session::update() {
     return state_->update();
+}
+void Session::checkpoint(const std::filesystem::path& file) const {
+    state_->checkpoint(file);
 }
 std::shared_ptr<const LiveScene> Session::scene() const {
     return state_->scene();

@@ -14,16 +14,24 @@ class PySession {
     PySession(const std::array<std::uint32_t, 2>& size, const std::array<double, 5>& camera,
               const std::shared_ptr<SharedDevice>& device, ParseOptions options, bool forget_gone,
               std::uint64_t max_frame_bytes)
-        : camera_(camera) {
-        if (device) options.device = device->here();
-        options.cancelled = Stopped();
-        const Intrinsics k = intrinsics(size[0], size[1], camera);
-        session_ = std::make_unique<Session>(
-            k, std::nullopt, SessionOptions{std::move(options), forget_gone, max_frame_bytes});
+        : camera_(camera),
+          session_(intrinsics(size[0], size[1], camera), std::nullopt,
+                   session_options(device, std::move(options), forget_gone, max_frame_bytes)) {}
+    PySession(const std::string& checkpoint, const std::shared_ptr<SharedDevice>& device,
+              ParseOptions options, bool forget_gone, std::uint64_t max_frame_bytes)
+        : session_(unlocked([&] {
+              return Session::resume(checkpoint, session_options(device, std::move(options),
+                                                                 forget_gone, max_frame_bytes));
+          })) {
+        const Intrinsics& k = session_.intrinsics();
+        camera_ = {k.fx, k.fy, k.cx, k.cy, k.depth_scale};
+    }
+    void checkpoint(const std::string& file) const {
+        unlocked([&] { session_.checkpoint(file); });
     }
     FrameId add(const PyFrame& frame, const py::array& pose) {
         const FramesView view = seen(frame, pose);
-        return unlocked([&] { return session_->add(view.images[0], view.camera_to_world[0]); });
+        return unlocked([&] { return session_.add(view.images[0], view.camera_to_world[0]); });
     }
     void correct(const std::vector<FrameId>& frames, const py::array& poses) {
         const auto numbers = row<const double>(poses, "camera_to_world");
@@ -31,24 +39,31 @@ class PySession {
         for (std::size_t n = 0; n < frames.size(); ++n)
             std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(16 * n), 16,
                         given[frames[n]].begin());
-        unlocked([&] { session_->correct(given); });
+        unlocked([&] { session_.correct(given); });
     }
     py::tuple label(const PyFrame& frame, const py::array& pose) const {
         const FramesView view = seen(frame, pose);
         ThingLabels found =
-            unlocked([&] { return session_->label(view.images[0], view.camera_to_world[0]); });
+            unlocked([&] { return session_.label(view.images[0], view.camera_to_world[0]); });
         return py::make_tuple(found.height, found.width, owned(std::move(found.thing)));
     }
     py::object update() {
-        return described(*stoppable([&] { return session_->update(); }));
+        return described(*stoppable([&] { return session_.update(); }));
     }
     py::object scene() const {
-        const auto found = session_->scene();
+        const auto found = session_.scene();
         return found ? described(*found) : py::none();
     }
-    Session& session() { return *session_; }
+    Session& session() { return session_; }
 
   private:
+    static SessionOptions session_options(const std::shared_ptr<SharedDevice>& device,
+                                          ParseOptions options, bool forget_gone,
+                                          std::uint64_t max_frame_bytes) {
+        if (device) options.device = device->here();
+        options.cancelled = Stopped();
+        return {std::move(options), forget_gone, max_frame_bytes};
+    }
     FramesView seen(const PyFrame& frame, const py::array& pose) const {
         const std::array<std::uint32_t, 2> size{static_cast<std::uint32_t>(frame.first.shape(1)),
                                                 static_cast<std::uint32_t>(frame.first.shape(0))};
@@ -63,8 +78,8 @@ class PySession {
                 py::make_tuple(thing.id, thing.object, to_string(thing.change), thing.moved_m));
         return py::make_tuple(parsed, things, found.frames);
     }
-    std::array<double, 5> camera_;
-    std::unique_ptr<Session> session_;
+    std::array<double, 5> camera_{};
+    Session session_;
 };
 
 }  // namespace
@@ -73,6 +88,9 @@ void bind_session(py::module_& module) {
     py::class_<PySession>(module, "Session")
         .def(py::init<const std::array<std::uint32_t, 2>&, const std::array<double, 5>&,
                       const std::shared_ptr<SharedDevice>&, ParseOptions, bool, std::uint64_t>())
+        .def(py::init<const std::string&, const std::shared_ptr<SharedDevice>&, ParseOptions, bool,
+                      std::uint64_t>())
+        .def("checkpoint", &PySession::checkpoint)
         .def("add", &PySession::add)
         .def("correct", &PySession::correct)
         .def("forget", [](PySession& s, FrameId frame) { s.session().forget(frame); })

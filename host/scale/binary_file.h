@@ -24,8 +24,10 @@ namespace topple::tiles {
 // Every file of the work folder but its manifest and its lock begins with this.
 inline constexpr std::string_view file_mark = "topple.w";
 
+inline constexpr const char* work_file_fault =
+    "is damaged or cut short; the same command makes it anew";
 [[noreturn]] inline void damaged_file(const std::filesystem::path& file) {
-    io::fail(file, "is damaged or cut short; the same command makes it anew");
+    io::fail(file, work_file_fault);
 }
 
 // For the work folder and others that only topple writes into. Writes beside the file and renames:
@@ -62,8 +64,9 @@ class BinaryWriter : public FieldWriter<BinaryWriter> {
 
 class BinaryReader : public FieldReader<BinaryReader> {
   public:
-    explicit BinaryReader(const std::filesystem::path& file)
-        : file_(file), bytes_(io::read_file(file)), rest_(bytes_.text()) {
+    // fault: what is said of a file that isn't what was written.
+    explicit BinaryReader(const std::filesystem::path& file, const char* fault = work_file_fault)
+        : file_(file), fault_(fault), bytes_(io::read_file(file)), rest_(bytes_.text()) {
         Checksum::Value sum;
         if (rest_.size() < file_mark.size() + sizeof(sum) || !rest_.starts_with(file_mark))
             damaged();
@@ -72,7 +75,7 @@ class BinaryReader : public FieldReader<BinaryReader> {
         if (Checksum::of(rest_.data(), summed) != sum) damaged();
         rest_ = rest_.substr(0, summed).substr(file_mark.size());
     }
-    [[noreturn]] void damaged() const { damaged_file(file_); }
+    [[noreturn]] void damaged() const { io::fail(file_, fault_); }
 
   private:
     friend FieldReader<BinaryReader>;
@@ -87,6 +90,7 @@ class BinaryReader : public FieldReader<BinaryReader> {
     void taken() const {}
 
     std::filesystem::path file_;
+    const char* fault_;
     io::FileBytes bytes_;
     std::string_view rest_;
 };

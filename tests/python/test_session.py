@@ -67,3 +67,25 @@ def test_what_is_no_frame_is_refused(device, depth_frames):
     assert live.frames == [0]
     with pytest.raises(topple.Error, match='max_frame_bytes'):
         session(device, max_frame_bytes=0).add(depth_frames[0], POSES[0])
+
+
+def test_a_session_goes_on_from_its_checkpoint(device, depth_frames, tmp_path):
+    live = session(device)
+    with pytest.raises(topple.Error, match='no frames yet'):
+        live.checkpoint(tmp_path / 'none')
+    for n in range(4):
+        live.add(depth_frames[n], POSES[n])
+    before = live.update()
+    live.checkpoint(tmp_path / 'session')
+    again = topple.Session.resume(tmp_path / 'session', device=device, disturbances=[])
+    assert again.scene is None and again.frames == [0, 1, 2, 3]
+    found = again.update()
+    assert [(t.id, t.object, t.change) for t in found.things] == [(t.id, t.object, 'none') for t in before.things]
+    assert np.array_equal(found.result.point_object, before.result.point_object)
+    assert np.array_equal(again.label(depth_frames[1], POSES[1]), live.label(depth_frames[1], POSES[1]))
+    assert again.add(depth_frames[4], POSES[4]) == 4
+    (tmp_path / 'session').write_bytes(b'topple.w')
+    for path in (tmp_path / 'session', tmp_path / 'missing'):
+        with pytest.raises(topple.Error, match=path.name) as raised:
+            topple.Session.resume(path)
+        assert raised.value.kind == 'input'

@@ -93,6 +93,7 @@ class Session {
     void correct(const std::map<FrameId, Mat4>& camera_to_world);
     // Leaves a frame out. Throws Error(usage) where there is none of that number.
     void forget(FrameId frame);
+    const Intrinsics& intrinsics() const;
     std::vector<FrameId> frames() const;  // that are kept, ascending
     std::uint64_t frame_bytes() const;    // that they take
 
@@ -101,6 +102,14 @@ class Session {
     // time; where nothing has changed since, it is the one before, with no changes. Throws what
     // parse() does; the scene before stays then.
     std::shared_ptr<const LiveScene> update();
+    // Writes the frames, their poses, and the things of the last update to a file: a session that
+    // begins from it goes on as this one would. Throws Error(input) where it can't be written, or
+    // is there and no checkpoint of topple.
+    void checkpoint(const std::filesystem::path& file) const;
+    // Has no scene before its first update(), which tells what has changed since the last one
+    // before the checkpoint. Throws Error(input) where the file is damaged, of another version, or
+    // no checkpoint.
+    static Session resume(const std::filesystem::path& file, SessionOptions options = {});
     // Of the last update; null before the first.
     std::shared_ptr<const LiveScene> scene() const;
     // The things of that scene in a depth frame. Throws Error(usage) before the first update.
@@ -108,6 +117,7 @@ class Session {
 
   private:
     class State;
+    explicit Session(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
 

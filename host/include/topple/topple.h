@@ -451,6 +451,12 @@ int topple_session_create(const topple_intrinsics* depth, const topple_intrinsic
                           const topple_options* options, uint64_t max_frame_bytes, int keep_gone,
                           topple_session** session, topple_status* status);
 void topple_session_release(topple_session* session);
+/* Writes the frames, their poses, and the things of the last update to a file, UTF-8. */
+int topple_session_checkpoint(const topple_session* session, const char* file,
+                              topple_status* status);
+/* A session that goes on from there, with the cameras of the file. */
+int topple_session_resume(const char* file, const topple_options* options, uint64_t max_frame_bytes,
+                          int keep_gone, topple_session** session, topple_status* status);
 /* Adds frames of that camera, whose intrinsics count, copied. `ids`, which may be NULL, gets the id
  * of each. Those before one that is refused stay. */
 int topple_session_add(topple_session* session, const topple_frames* frames, uint64_t* ids,

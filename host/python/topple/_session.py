@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A scan that is still being made."""
 import operator
+import os
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from ._arrays import usage
 from ._device import open_device
 from ._frames import colour_image, depth_image, poses as _poses
 from ._options import option, options
-from .stages import camera
+from .stages import Intrinsics, camera
 
 
 class Thing(NamedTuple):
@@ -48,6 +49,18 @@ class Session:
         self._max_frame_bytes = option('max_memory_bytes', max_frame_bytes)
         self._session = None  # once the frames' size is known
 
+    @classmethod
+    def resume(cls, path, **options):
+        """Goes on from what checkpoint() wrote: its frames, their poses, and the things of its last update, whose ids stay. options: those of
+        Session, but for its intrinsics, which the file has. scene is None until update()."""
+        session = cls(Intrinsics(1, 1, 0, 0), **options)
+        session._session = _topple.Session(os.fspath(path), *session._how())
+        return session
+
+    def checkpoint(self, path):
+        """Writes the frames, their poses, and the things of the last update to a file, which is there whole or not at all."""
+        self._begun().checkpoint(os.fspath(path))
+
     def add(self, depth, camera_to_world, colour=None):
         """Copies a frame in, and returns its number, from 0. depth: (H, W) uint16, metres times depth_scale, 0: no reading; or floats, metres.
         camera_to_world: (4, 4), metres, camera x right, y down, z forward. colour: (H, W, 3) uint8 sRGB, or None. A frame without
@@ -57,7 +70,7 @@ class Session:
         pose = self._pose(camera_to_world)
         if self._session is None:
             height, width = depth.shape
-            self._session = _topple.Session((width, height), self._camera, self._device, self._options, self._forget_gone, self._max_frame_bytes)
+            self._session = _topple.Session((width, height), self._camera, *self._how())
         return self._session.add(frame, pose)
 
     def correct(self, camera_to_world):
@@ -96,6 +109,9 @@ class Session:
         """The id of the Thing that each pixel of a depth image shows, (H, W) int64; -1: nothing that is known."""
         height, width, ids = self._begun().label((depth_image(depth, 'depth'), None), self._pose(camera_to_world))
         return ids.reshape(height, width)
+
+    def _how(self):
+        return self._device, self._options, self._forget_gone, self._max_frame_bytes
 
     @staticmethod
     def _pose(camera_to_world, number=None):

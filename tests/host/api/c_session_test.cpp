@@ -75,6 +75,23 @@ TEST_F(CApi, ASessionIsThatOfCpp) {
               TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_session_correct(session, nullptr, right.data(), 1, &status),
               TOPPLE_ERROR_USAGE);
+    // A checkpoint, and on from there: the same things, by the same ids.
+    const std::string file = path("session.checkpoint").string();
+    ASSERT_EQ(topple_session_checkpoint(session, file.c_str(), &status), TOPPLE_OK);
+    topple_session_release(session);
+    EXPECT_EQ(topple_session_checkpoint(nullptr, file.c_str(), &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_session_resume("none", &options, 0, 1, &session, &status), TOPPLE_ERROR_INPUT);
+    EXPECT_EQ(session, nullptr);
+    ASSERT_EQ(topple_session_resume(file.c_str(), &options, 0, 1, &session, &status), TOPPLE_OK)
+        << status.message;
+    std::uint64_t again = 0;
+    ASSERT_EQ(topple_session_update(session, nullptr, &again, &status), TOPPLE_OK);
+    ASSERT_EQ(again, things);
+    for (std::uint64_t n = 0; n < things; ++n) {
+        ASSERT_EQ(topple_session_thing(session, n, &thing, &status), TOPPLE_OK);
+        EXPECT_EQ(thing.id, expected->things[n].id);
+        EXPECT_EQ(thing.change, TOPPLE_CHANGE_NONE);
+    }
     topple_session_release(session);
     EXPECT_EQ(topple_session_add(nullptr, &frames, nullptr, &status), TOPPLE_ERROR_USAGE);
     topple_session_release(nullptr);

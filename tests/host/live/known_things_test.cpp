@@ -51,6 +51,22 @@ TEST(KnownThings, ThoseThatTheSamePixelsShowKeepTheirIds) {
     for (const Thing& thing : second) EXPECT_EQ(thing.change, Change::none);
 }
 
+// As behind what is larger, where a model of it lies all the same.
+TEST(KnownThings, WhatNoPixelShowsIsKnownByItsPlace) {
+    KnownThings known;
+    Scene scene;
+    scene.objects = {building(), object({1, 0, 0}, cup, 0.3), object({2, 0, 0}, cup, 0.3)};
+    known.name(scene, shown({0, 0, 1, 1}));
+    scene.objects = {building(), object({2.01, 0, 0}, cup, 0.31), object({1, 0, 0}, cup, 0.3),
+                     object({4, 0, 0}, cup, 0.3)};
+    const auto things = known.name(scene, shown({0, 0, 2, 2}));
+    ASSERT_EQ(things.size(), 4u);
+    EXPECT_EQ(things[1].id, 2u);
+    EXPECT_EQ(things[1].change, Change::none);
+    EXPECT_EQ(things[2].id, 1u);
+    EXPECT_EQ(things[3].change, Change::found);
+}
+
 TEST(KnownThings, WhatIsElsewhereHasMovedAndTheRestComesAndGoes) {
     KnownThings known;
     Scene scene;

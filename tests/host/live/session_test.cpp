@@ -5,10 +5,14 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstring>
+#include <optional>
 #include <thread>
 
+#include "core/checksum.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_walk.h"
+#include "io/text.h"
 
 // A session is a parse of the frames that it has, and knows things again.
 namespace topple::test {
@@ -159,6 +163,90 @@ TEST_F(Sessions, WhatIsNoFrameIsRefusedAndChangesNothing) {
     SessionOptions none = quick();
     none.max_frame_bytes = 0;
     refused(ErrorKind::usage, "max_frame_bytes", [&] { Session(walk_->intrinsics, {}, none); });
+}
+
+// As if the process had ended: frames, poses, what is known of things, all of it goes on.
+TEST_F(Sessions, GoOnFromACheckpoint) {
+    const auto file = path("session.checkpoint");
+    std::optional<Session> first(std::in_place, walk_->intrinsics, std::nullopt, quick());
+    for (std::size_t n = 0; n < 4; ++n) first->add(frame(n), shifted(pose(n), n < 2 ? 0 : 0.3));
+    const auto before = first->update();
+    first->correct({{2, pose(2)}, {3, pose(3)}});
+    first->forget(1);
+    first->checkpoint(file);
+    const auto more = [&](Session& session) {
+        EXPECT_EQ(session.add(frame(4), pose(4)), 4u);
+        return session.update();
+    };
+    const auto expected = more(*first);
+    first.reset();
+
+    Session again = Session::resume(file, quick());
+    EXPECT_EQ(again.scene(), nullptr);
+    EXPECT_EQ(again.frames(), (std::vector<FrameId>{0, 2, 3}));
+    EXPECT_EQ(again.intrinsics().fx, walk_->intrinsics.fx);
+    EXPECT_THROW(again.add(frame(3), shifted(pose(3), 0.3)), Error) << "the frame before";
+    const auto found = more(again);
+    expect_same(found->result->scene, expected->result->scene);
+    ASSERT_EQ(found->things.size(), expected->things.size());
+    std::size_t known = 0;
+    for (std::size_t n = 0; n < found->things.size(); ++n) {
+        EXPECT_EQ(found->things[n].id, expected->things[n].id);
+        EXPECT_EQ(found->things[n].change, expected->things[n].change);
+        known += std::ranges::any_of(before->things, [&](const Thing& thing) {
+            return thing.id == found->things[n].id && thing.object >= 0;
+        });
+    }
+    EXPECT_GT(known, 2u);
+    // Of less memory: what others stand next to goes.
+    SessionOptions small = quick();
+    small.max_frame_bytes = again.frame_bytes() / 2;
+    EXPECT_LT(Session::resume(file, small).frames().size(), 3u);
+    again.checkpoint(file);  // in its place
+    EXPECT_EQ(Session::resume(file, quick()).frames().size(), 4u);
+}
+
+TEST_F(Sessions, ACheckpointThatIsDamagedIsRefused) {
+    const auto file = path("session.checkpoint"), other = write("notes.txt", "mine");
+    Session session(walk_->intrinsics, {}, quick());
+    for (std::size_t n = 0; n < 3; ++n) session.add(frame(n), pose(n));
+    session.update();
+    session.checkpoint(file);
+    const std::string whole(io::read_file(file).text());
+    const auto refused = [&](const std::string& text, const char* words) {
+        write("session.checkpoint", text);
+        try {
+            Session::resume(file, quick());
+            ADD_FAILURE() << words;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+        }
+    };
+    refused({}, "is empty");
+    refused("topple.w", "damaged or cut short");
+    refused(whole.substr(0, whole.size() / 2), "damaged or cut short");
+    std::string turned = whole;
+    turned[turned.size() / 3] ^= 1;
+    refused(turned, "damaged or cut short");
+    // Whatever the checksum says: each byte before the images, and some after.
+    constexpr std::size_t sum_bytes = sizeof(Checksum::Value);
+    for (std::size_t at = 8; at + sum_bytes < whole.size(); at += at < 400 ? 1 : 997) {
+        turned = whole;
+        turned[at] = static_cast<char>(turned[at] ^ 0xFF);
+        const Checksum::Value sum = Checksum::of(turned.data(), turned.size() - sum_bytes);
+        std::memcpy(turned.data() + turned.size() - sum_bytes, &sum, sum_bytes);
+        write("session.checkpoint", turned);
+        try {
+            Session from = Session::resume(file, quick());
+            if (at % 64 == 0) from.update();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input) << at << ": " << error.what();
+        }
+    }
+    EXPECT_THROW(session.checkpoint(other), Error);
+    EXPECT_EQ(io::read_file(other).text(), "mine");
+    EXPECT_THROW(session.checkpoint(path("missing") / "file"), Error);
 }
 
 TEST_F(Sessions, KeepsToItsMemoryAndLeavesOutFramesThatOthersStandNextTo) {

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "live/checkpoint.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/field_rules.h"
+#include "io/replace_file.h"
+#include "io/text.h"
+#include "live/coarse_frame.h"
+#include "points/formats/frame_sequence.h"
+#include "points/formats/rigid_pose.h"
+#include "scale/binary_file.h"
+
+namespace topple::live {
+namespace {
+
+// Changes with what is written below.
+const std::string mark = "topple session 1";
+
+// A map by ascending key: fields(io, key, value) lists those of one.
+template <class Io, class Map, class Fields>
+void map_fields(Io& io, Map& map, const Fields& fields) {
+    if constexpr (Io::writes) {
+        io(static_cast<std::uint64_t>(map.size()));
+        for (const auto& [key, value] : map) {
+            io(key);
+            fields(io, value);
+        }
+    } else {
+        const std::uint64_t count = io.count();
+        map.clear();
+        for (std::uint64_t n = 0; n < count; ++n) {
+            const auto key = io.template value<typename Map::key_type>();
+            io.expect(map.empty() || key > map.rbegin()->first);
+            fields(io, map[key]);
+        }
+    }
+}
+
+template <class Io, class Of>
+void intrinsics_fields(Io& io, Of& k) {
+    io(k.width);
+    io(k.height);
+    for (auto* value : {&k.fx, &k.fy, &k.cx, &k.cy, &k.depth_scale}) io(*value);
+}
+
+// Lists them for both ways; what is read is checked.
+template <class Io, class Of>
+void fields(Io& io, Of& of) {
+    intrinsics_fields(io, of.depth);
+    io.expect(!io::depth_intrinsics_fault(of.depth));
+    bool coloured = of.colour.has_value();
+    io(coloured);
+    if (coloured) {
+        if constexpr (!Io::writes) of.colour.emplace();
+        intrinsics_fields(io, *of.colour);
+        io.expect(!io::pinhole_fault(*of.colour));
+    }
+    io(of.frames.next);
+    io(of.frames.last);
+    const auto frames_below_next = [&](const auto& map) {
+        io.expect(map.empty() || map.rbegin()->first < of.frames.next);
+    };
+    map_fields(io, of.frames.kept, [&](auto& each, auto& kept) {
+        if constexpr (Io::writes) {
+            KeptFrame::fields(each, *kept.frame);
+        } else {
+            auto frame = std::make_shared<KeptFrame>();
+            KeptFrame::fields(each, *frame);
+            kept.frame = std::move(frame);
+        }
+        each.expect(kept.frame->is_of(of.depth.width, of.depth.height));
+        each(kept.pose, rules::finite);
+        Mat4 rigid = kept.pose;
+        each.expect(!io::make_rigid(rigid));
+    });
+    frames_below_next(of.frames.kept);
+    const Intrinsics coarse = Coarse(of.depth).intrinsics();
+    KnownThings::fields(io, of.remembered.things, std::size_t{coarse.width} * coarse.height);
+    map_fields(io, of.remembered.poses, [](auto& each, auto& pose) { each(pose, rules::finite); });
+    frames_below_next(of.remembered.poses);
+}
+
+}  // namespace
+
+template <class Io, class Self>
+void KnownThings::fields(Io& io, Self& known, std::size_t pixels) {
+    io(known.next_);
+    list_fields(io, known.before_, [&](auto& each, auto& before) {
+        each(before.id);
+        each.expect(before.id < known.next_);
+        each(before.middle_m, rules::finite);
+        each(before.size_m, rules::finite);
+        each(before.mass_kg);
+        each(before.stands_on);
+        each.expect(std::ranges::is_sorted(before.stands_on));
+        each(before.category, rules::shown);
+    });
+    map_fields(io, known.showed_, [&](auto& each, auto& objects) {
+        each(objects, rules::length(pixels), rules::labels(known.before_.size()));
+    });
+}
+
+void Checkpoint::write(const std::filesystem::path& file) const {
+    io::check_own_file(file, mark.substr(0, mark.rfind(' ')),
+                       "exists and is no checkpoint of topple; choose another name");
+    io::PendingFile pending(file);
+    tiles::BinaryWriter writer(pending.path());
+    writer(mark);
+    fields(writer, *this);
+    writer.finish();
+    pending.commit();
+    io::sync_folder(std::filesystem::absolute(file).parent_path());
+}
+
+Checkpoint Checkpoint::read(const std::filesystem::path& file) {
+    tiles::BinaryReader reader(file, "is damaged or cut short, or no checkpoint of a session");
+    if (reader.value<std::string>() != mark)
+        io::fail(file, "is of another version of topple, or no checkpoint of a session");
+    Checkpoint out;
+    fields(reader, out);
+    return out;
+}
+
+}  // namespace topple::live

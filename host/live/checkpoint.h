@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "core/checksum.h"
+#include "live/kept_frame.h"
+#include "live/known_things.h"
+#include "topple/session.h"
+
+namespace topple::live {
+
+struct PosedFrame {
+    std::shared_ptr<const KeptFrame> frame;
+    Mat4 pose{};  // as it was given
+};
+
+struct KeptFrames {
+    std::map<FrameId, PosedFrame> kept;
+    FrameId next = 0;
+    Checksum::Value last{};  // of the frame added last
+};
+
+// What the last update left for the next one.
+struct Remembered {
+    KnownThings things;
+    std::map<FrameId, Mat4> poses;  // that it was parsed from
+};
+
+// What a session is beside its options.
+struct Checkpoint {
+    Intrinsics depth;
+    std::optional<Intrinsics> colour;
+    KeptFrames frames;
+    Remembered remembered;
+
+    // There whole or not at all, also after a loss of power. Throws Error(input) where it can't be
+    // written, or where the file is there and none of topple's.
+    void write(const std::filesystem::path& file) const;
+    // Throws Error(input) where it is damaged, or none that write() makes.
+    static Checkpoint read(const std::filesystem::path& file);
+};
+
+}  // namespace topple::live
