@@ -34,7 +34,7 @@ double quickness(const Profile& body) {
     return std::max(about(body.ahead_m), about(body.behind_m));
 }
 
-// Records as the kernel takes them, each step cut in so many that none is longer than longest_s.
+// Records as the kernel takes them, steps cut in so many that none is longer than longest_s.
 struct Chunks {
     std::vector<std::uint32_t> first{0};
     std::vector<float> step_s;
@@ -72,6 +72,7 @@ struct Chunks {
         const double after = longest_after_s / (static_cast<double>(chunk_steps) * step_s.back());
         longest = std::max(longest, static_cast<std::uint32_t>(chunks + std::ceil(after)) + 1);
     }
+    std::uint32_t last() const { return static_cast<std::uint32_t>(step_s.size() - 1); }
     std::uint32_t longest = 0;  // chunks until the last motion has come to its own
 };
 
@@ -89,15 +90,15 @@ device::Buffer<T> on(device::Device& device, const std::vector<T>& values, const
     return device::Buffer<T>(device, std::span<const T>(values), name);
 }
 
-// One dispatch: events by record, padded to whole blocks of each.
+// One dispatch: events by record and step, padded to whole blocks of each.
 struct Batch {
     std::vector<std::uint32_t> source;  // index into the shakings; none: padding
     std::vector<std::uint32_t> body, block_record;
     std::array<std::vector<float>, 4> scale;
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
-    void add(std::uint32_t index, const Shaking& s) {
-        if (body.size() % block_events == 0) block_record.push_back(s.record);
+    void add(std::uint32_t index, std::uint32_t record, const Shaking& s) {
+        if (body.size() % block_events == 0) block_record.push_back(record);
         push(index, s.body, s);
     }
     void fill_block() {
@@ -226,28 +227,28 @@ std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodie
                          std::hypot(s.along, s.across) / std::max(least, 1e-6),
                          static_cast<std::uint32_t>(n)});
     }
+    // The finest first, which take longest.
     std::sort(order.begin(), order.end(), [](const Order& a, const Order& b) {
-        if (a.fineness != b.fineness) return a.fineness < b.fineness;
+        if (a.fineness != b.fineness) return a.fineness > b.fineness;
         if (a.record != b.record) return a.record < b.record;
         return a.ease != b.ease ? a.ease < b.ease : a.index < b.index;
     });
     if (order.empty()) return out;
     const auto body = on(device, planes_of(bodies, friction), "body");
-    for (std::size_t from = 0; from < order.size();) {
+    for (std::size_t n = 0; n < order.size();) {
         Chunks chunks;
-        for (const Accelerogram& record : records)
-            chunks.add(record, longest_step / 5 / std::exp2(order[from].fineness));
         Batch batch;
-        std::size_t n = from;
-        for (; n < order.size() && order[n].fineness == order[from].fineness &&
-               batch.body.size() < most_events;
-             ++n) {
-            if (n > from && order[n].record != order[n - 1].record) batch.fill_block();
-            batch.add(order[n].index, shakings[order[n].index]);
+        for (; n < order.size() && batch.body.size() < most_events; ++n) {
+            const Order& at = order[n];
+            if (batch.body.empty() || at.fineness != order[n - 1].fineness ||
+                at.record != order[n - 1].record) {
+                batch.fill_block();
+                chunks.add(records[at.record], longest_step / 5 / std::exp2(at.fineness));
+            }
+            batch.add(at.index, chunks.last(), shakings[at.index]);
         }
         batch.fill_block();
         run_batch(device, body, bodies.size(), chunks, batch, out);
-        from = n;
     }
     return out;
 }
