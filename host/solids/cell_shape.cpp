@@ -223,7 +223,7 @@ void add_corners(const BoundaryCells& b, std::size_t n, double h, std::vector<Ve
     for (std::size_t s = 0; s < b.slots_used(n); ++s)
         most = std::max(most, bend(b.patches[b.slot[s][n]]));
     // A chord of an arc lies so far inside of it, in voxels, and what of that is too much.
-    constexpr double tolerance = 0.005;
+    constexpr double tolerance = 0.01;
     constexpr int most_parts = 4;
     const int parts =
         std::clamp(static_cast<int>(std::ceil(std::sqrt(most * h / 8 / tolerance))), 1, most_parts);
