@@ -33,9 +33,6 @@ struct Extent {
     }
     int wide() const { return high[0] - low[0] + 1; }
     int tall() const { return high[1] - low[1] + 1; }
-    bool holds(std::int32_t i, std::int32_t j) const {
-        return i >= low[0] && i <= high[0] && j >= low[1] && j <= high[1];
-    }
 };
 
 class Slices {
@@ -45,6 +42,8 @@ class Slices {
         for (std::size_t n = 0; n < solid.x.size(); ++n)
             solid_.push_back(cell_at({solid.x[n], solid.y[n], solid.z[n]}));
         for (const auto& [i, j, k] : field.cell) extent_.take(i, j);
+        for (const auto& [i, j, k] : solid_)
+            extent_.take(i, j);  // so that all fields show the same
         pixels_ =
             std::max(1, std::min(panel_width / extent_.wide(), tallest_panel / extent_.tall()));
     }
@@ -101,7 +100,7 @@ class Slices {
             fill(raster, i, j, colour(ramp_colour(field_.frequency[n] / strongest)));
         }
         for (const auto& [i, j, k] : solid_)
-            if (k == layer && extent_.holds(i, j)) fill(raster, i, j, {0.62, 0.63, 0.64});
+            if (k == layer) fill(raster, i, j, {0.62, 0.63, 0.64});
         canvas.image(x0, top, raster);
         canvas.text(x0, top - 8, to_places(height_m, 1) + " m above the floor", Align::left,
                     {.size = 13});
