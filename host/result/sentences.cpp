@@ -281,6 +281,13 @@ std::string at_least_N(double force_N) {
     return io::two_digits(std::ceil(force_N * steps - 1e-9) / steps);
 }
 
+// What nobody lifts alone: the guideline of the British Health and Safety Executive (INDG143) for
+// men at the best height.
+std::string with_help(const Object& object) {
+    constexpr double alone_kg = 25;
+    return object.mass_kg > alone_kg ? ", with somebody's help" : "";
+}
+
 std::string fix_sentence(const Object& object, const Suggestion& what) {
     constexpr double one_strap_m = 1;  // what is wider turns about a single one; set by hand
     constexpr double high_m = 0.3;     // of where a fall begins; set by hand
@@ -290,7 +297,8 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
         return std::string(worst_words(object).high_mend) + ": from here it falls " +
                io::length_text(object.fall.drop_m) + ".";
     if ((bolted && !light && is_carried(object)) || is_moved_about(object.name))
-        return "Move it to where nobody passes and it stands level, or take it out.";
+        return "Move it to where nobody passes and it stands level, or take it out" +
+               with_help(object) + ".";
     std::string text = mend_of(object, what.fasten);
     const bool large = *std::ranges::max_element(object.size_m) > shelf_m;
     if (light)
@@ -327,8 +335,8 @@ std::string plain_advice(const Object& object, const Suggestion& what) {
                                io::length_text(std::hypot(what.move_m[0], what.move_m[1])) +
                                " to the " + compass(azimuth_deg(what.move_m));
             if (!object.fall.takes_along.empty()) text += ", with what stands on it";
-            return text + ": its risk falls from " + joules(safety::largest_risk(object).risk_J) +
-                   " to " + joules(what.risk_J) + ".";
+            return text + with_help(object) + ": its risk falls from " +
+                   joules(safety::largest_risk(object).risk_J) + " to " + joules(what.risk_J) + ".";
         }
         case Suggestion::Kind::fix:
             return fix_sentence(object, what);

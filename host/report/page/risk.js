@@ -226,7 +226,7 @@ function todoInShort(object) {
   const {action = '', sentence} = object.advice || {};
   if (/ tall and heavy: /.test(action)) return 'Tall and heavy: see that it is fastened.';
   if (object.unsafety_category === 'none') return 'No need to act.';
-  return sentence ? `${sentence.split(/, with |[:;(]|\. |\.$/)[0].trim()}.` : 'Fasten it if it must not fall.';
+  return sentence ? `${sentence.split(/, with (?!somebody)|[:;(]|\. |\.$/)[0].trim()}.` : 'Fasten it if it must not fall.';
 }
 
 // Who gets hold of it from the floor, and what upsets it then; '' where nobody does who was asked for.

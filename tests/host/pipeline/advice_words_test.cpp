@@ -83,7 +83,7 @@ const std::vector<Situation> situations{
      Kind::fix,
      free_standing,
      0,
-     {move},
+     {move, "with somebody's help"},
      {bolt, strap}},
     {"a chair at a wall",
      "chair",
