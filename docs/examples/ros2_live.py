@@ -3,12 +3,19 @@
 
   python3 ros2_live.py --ros-args -r depth:=/camera/depth/image_rect -r camera_info:=/camera/depth/camera_info -r path:=/rtabmap/mapPath
 
-Takes depth images (sensor_msgs/Image, 16UC1 in millimetres or 32FC1 in metres, rectified) with their CameraInfo, the camera's place from tf2,
-and, where a SLAM system tells one, its path (nav_msgs/Path), which moves the frames of before a loop closure. Tells `objects`
-(visualization_msgs/MarkerArray: a box and words each) and `things` (std_msgs/String, JSON: id, change, object, what is to be done).
+Takes depth images (`depth`: sensor_msgs/Image, 16UC1 in millimetres or 32FC1 in metres, rectified, its frame_id the optical frame; without
+colours) with their CameraInfo, the camera's place from tf2, and, where a SLAM system tells one, its path (`path`: nav_msgs/Path, each pose with
+its own stamp), which moves the frames of before a loop closure; without it they stay where they were.
 
-Parameters: fixed_frame (map); step_m, step_deg (0.1, 10): how far the camera goes from one frame that is taken to the next; update_s (5): from
-the end of an update to the next one; checkpoint (none): a file to go on from after a crash. It needs rclpy, tf2_ros and topple.
+Tells, latched: `objects` (visualization_msgs/MarkerArray: a box and its category each), and `things` (std_msgs/String, JSON: a list of {id, the
+same as long as it is the same thing, 0 for the building; change, moved_m: docs/live.md; and of what is there category, action: what is to be
+done, middle_m and size_m: its box, in fixed_frame and along the room's axes}).
+
+Parameters: fixed_frame (map), z upwards; step_m, step_deg (0.1, 10): one of them is how far the camera goes from a frame that is taken to the
+next; update_s (5): from the end of an update to the next one; voxel_m (0: found); checkpoint (none): a file that is written after each update and
+gone on from at the start, where it is there, in the same map. Frames of before that are not moved by loop closures any more.
+
+It needs rclpy, tf2_ros and topple for the Python that ROS has: docs/python.md says which wheel fits, and how to build it where none does.
 """
 import collections
 import json
@@ -20,7 +27,7 @@ import rclpy
 import tf2_ros
 from nav_msgs.msg import Path
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
@@ -58,26 +65,41 @@ def seconds(stamp):
 class Live(Node):
     def __init__(self):
         super().__init__('topple_live')
-        self.fixed, self.step_m, self.step_deg, self.update_s, self.checkpoint = (
+        self.fixed, self.step_m, self.step_deg, self.update_s, voxel_m, self.checkpoint = (
             self.declare_parameter(name, value).value
-            for name, value in (('fixed_frame', 'map'), ('step_m', 0.1), ('step_deg', 10.0), ('update_s', 5.0), ('checkpoint', '')))
-        self.session = topple.Session.resume(self.checkpoint) if self.checkpoint and os.path.exists(self.checkpoint) else None
+            for name, value in (('fixed_frame', 'map'), ('step_m', 0.1), ('step_deg', 10.0), ('update_s', 5.0), ('voxel_m', 0.0), ('checkpoint', '')))
+        self.options = {'up': (0, 0, 1), 'voxel_m': voxel_m}
+        self.session = None  # once the camera is known
+        if self.checkpoint and os.path.exists(self.checkpoint):
+            self.session = topple.Session.resume(self.checkpoint, **self.options)
+            self.get_logger().info(f'going on from {self.checkpoint} with {len(self.session.frames)} frames')
         self.waiting = collections.deque(maxlen=30)  # images whose place is not known yet
         self.last = None  # the pose of the frame that was taken last
         self.path = {}  # poses by time, as the SLAM system has them now
-        self.hangs = {}  # of each frame: the time of its place in the path, and its pose from there; or its own time and pose
+        self.hangs = {}  # of each frame: its time, its pose, and the time of a place in the path with the pose from there, or None
         self.changed = threading.Event()
         self.buffer = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.buffer, self)
-        self.objects = self.create_publisher(MarkerArray, 'objects', 1)
-        self.things = self.create_publisher(String, 'things', 1)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.objects = self.create_publisher(MarkerArray, 'objects', latched)
+        self.things = self.create_publisher(String, 'things', latched)
         self.create_subscription(CameraInfo, 'camera_info', self.take_camera, qos_profile_sensor_data)
         self.create_subscription(Image, 'depth', self.take_image, qos_profile_sensor_data)
         self.create_subscription(Path, 'path', self.take_path, 1)
+        self.create_timer(10.0, self.tell)
 
     def take_camera(self, info):
-        if self.session is None and info.k[0] > 0:
-            self.session = topple.Session(topple.stages.Intrinsics(info.k[0], info.k[4], info.k[2], info.k[5]))
+        if self.session is None and info.p[0] > 0:  # of the rectified image
+            self.session = topple.Session(topple.stages.Intrinsics(info.p[0], info.p[5], info.p[2], info.p[6]), **self.options)
+
+    def tell(self):
+        """What is missing, as long as something is."""
+        if self.session is None:
+            self.get_logger().warning('no CameraInfo has come on camera_info')
+        elif self.waiting:
+            self.get_logger().warning(f'{len(self.waiting)} images wait for tf from {self.waiting[0].header.frame_id} to {self.fixed}')
+        elif not self.session.frames:
+            self.get_logger().warning('no image has come on depth')
 
     def take_image(self, image):
         self.waiting.append(image)
@@ -104,17 +126,22 @@ class Live(Node):
         self.changed.set()
 
     def hung(self, time, pose):
-        """Where the path has a place before it: that one's time, and the pose from there."""
-        before = [t for t in self.path if t <= time]
-        return (max(before), np.linalg.inv(self.path[max(before)]) @ pose) if before else (time, pose)
+        """On the last place of the path before it, where there is one."""
+        place = max((t for t in self.path if t <= time), default=None)
+        return time, pose, place if place is None else (place, np.linalg.inv(self.path[place]) @ pose)
 
     def take_path(self, path):
-        """After a loop closure all frames go where the path goes."""
-        self.path = {seconds(p.header.stamp): matrix(p.pose.position, p.pose.orientation) for p in path.poses}
+        """After a loop closure all frames go where the path goes; one whose place has left it stays."""
+        places = {seconds(p.header.stamp): matrix(p.pose.position, p.pose.orientation) for p in path.poses}
+        if not all(np.isfinite(place).all() for place in places.values()):
+            self.get_logger().warning('a pose of the path is not finite; frames stay where they were')
+            return
+        self.path = places
         moved = {}
-        for frame, (time, pose) in self.hangs.items():
-            if time in self.path:
-                moved[frame] = self.path[time] @ pose
+        for frame, (time, pose, place) in self.hangs.items():
+            if place and place[0] in places:
+                moved[frame] = places[place[0]] @ place[1]
+                self.hangs[frame] = time, moved[frame], place
             else:
                 self.hangs[frame] = self.hung(time, pose)
         if moved:
@@ -125,13 +152,16 @@ class Live(Node):
         """Parses what is there, and tells it."""
         self.changed.clear()
         found = self.session.update()
+        objects = {o.id: o for o in found.result.objects}
+        told = [{'id': t.id, 'change': t.change, 'moved_m': t.moved_m} for t in found.things]
+        for one, thing in zip(told, found.things):
+            if thing.object >= 0:
+                o = objects[thing.object]
+                one |= {'category': o.unsafety_category, 'action': o.action, 'middle_m': list(o.box_middle_m), 'size_m': list(o.size_m)}
+        self.things.publish(String(data=json.dumps(told)))
+        self.objects.publish(self.markers(found))
         if self.checkpoint:
             self.session.checkpoint(self.checkpoint)
-        objects = {o.id: o for o in found.result.objects}
-        self.things.publish(String(data=json.dumps([
-            {'id': t.id, 'change': t.change, 'object': t.object, 'moved_m': t.moved_m,
-             'action': objects[t.object].action if t.object >= 0 else ''} for t in found.things])))
-        self.objects.publish(self.markers(found))
 
     def markers(self, found):
         out = MarkerArray()
@@ -141,17 +171,18 @@ class Live(Node):
         turn = geometry.quaternion(geometry.room_axes(found.result).T)
         for box in geometry.boxes(found.result):
             item = items[box.object]
-            for name, kind, size in (('boxes', Marker.CUBE, box.size), ('words', Marker.TEXT_VIEW_FACING, (0, 0, 0.05))):
+            above = np.array([0, 0, box.size[2] / 2 + 0.05])
+            for name, kind, size, lift in (('boxes', Marker.CUBE, box.size, 0 * above), ('words', Marker.TEXT_VIEW_FACING, (0, 0, 0.05), above)):
                 marker = Marker(ns=name, id=int(ids[item.id]), type=kind, action=Marker.ADD)
                 marker.header.frame_id = self.fixed
-                marker.pose.position.x, marker.pose.position.y, marker.pose.position.z = map(float, box.centre)
+                marker.pose.position.x, marker.pose.position.y, marker.pose.position.z = map(float, box.centre + lift)
                 at = marker.pose.orientation
                 at.x, at.y, at.z, at.w = map(float, turn)
                 marker.scale.x, marker.scale.y, marker.scale.z = map(float, size)
                 paint = marker.color
                 paint.r, paint.g, paint.b = (c / 255 for c in geometry.unsafety_colour(item))
                 paint.a = 0.5 if kind == Marker.CUBE else 1.0
-                marker.text = f'{ids[item.id]}: {item.action}' if kind == Marker.TEXT_VIEW_FACING else ''
+                marker.text = f'{ids[item.id]}: {item.unsafety_category or "not judged"}' if kind == Marker.TEXT_VIEW_FACING else ''
                 out.markers.append(marker)
         return out
 
@@ -160,8 +191,8 @@ class Live(Node):
             if self.changed.wait(self.update_s):
                 try:
                     self.update()
-                except topple.Error as error:
-                    self.get_logger().warning(str(error))
+                except Exception as error:  # whatever it is, the next update may do
+                    self.get_logger().warning(f'{type(error).__name__}: {error}')
                 threading.Event().wait(self.update_s)
 
 
@@ -169,7 +200,11 @@ def main():
     rclpy.init()
     node = Live()
     threading.Thread(target=node.run, daemon=True).start()
-    rclpy.spin(node)
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
+    node.destroy_node()
 
 
 if __name__ == '__main__':

@@ -105,7 +105,7 @@ void KnownThings::fields(Io& io, Self& known, std::size_t pixels) {
 
 void Checkpoint::write(const std::filesystem::path& file) const {
     io::check_own_file(file, mark.substr(0, mark.rfind(' ')),
-                       "exists and is no checkpoint of topple; choose another name");
+                       "is no checkpoint of topple; choose another name");
     io::PendingFile pending(file);
     tiles::BinaryWriter writer(pending.path());
     writer(mark);
@@ -116,9 +116,10 @@ void Checkpoint::write(const std::filesystem::path& file) const {
 }
 
 Checkpoint Checkpoint::read(const std::filesystem::path& file) {
-    tiles::BinaryReader reader(file, "is damaged or cut short, or no checkpoint of a session");
+    tiles::BinaryReader reader(
+        file, "is no checkpoint of a session, or damaged or cut short; go on from an older one");
     if (reader.value<std::string>() != mark)
-        io::fail(file, "is of another version of topple, or no checkpoint of a session");
+        io::fail(file, "is no checkpoint of a session of this version of topple; begin anew");
     Checkpoint out;
     fields(reader, out);
     return out;

@@ -40,8 +40,11 @@ class Node:
     def create_subscription(self, kind, topic, call, quality):
         self.topics[topic] = call
 
+    def create_timer(self, seconds, call):
+        self.timer = call
+
     def get_logger(self):
-        return Fields(warning=self.said.append)
+        return Fields(warning=self.said.append, info=lambda text: None)
 
 
 class TransformException(Exception):
@@ -74,7 +77,7 @@ def stamp(time):
 def live(monkeypatch, tmp_path):
     message = type('Message', (Fields,), {})
     modules = {'rclpy': {'ok': lambda: True, 'time': Fields(Time=Fields(from_msg=lambda s: s.sec + s.nanosec / 1e9))},
-               'rclpy.node': {'Node': Node}, 'rclpy.qos': {'qos_profile_sensor_data': None},
+               'rclpy.node': {'Node': Node}, 'rclpy.qos': {'qos_profile_sensor_data': None, 'QoSProfile': Fields, 'DurabilityPolicy': Fields(TRANSIENT_LOCAL=1)},
                'tf2_ros': {'Buffer': Buffer, 'TransformListener': lambda *_: None, 'TransformException': TransformException},
                'nav_msgs.msg': {'Path': message}, 'sensor_msgs.msg': {'CameraInfo': message, 'Image': message}, 'std_msgs.msg': {'String': message},
                'visualization_msgs.msg': {'Marker': Marker, 'MarkerArray': lambda: Fields(markers=[])}}
@@ -103,7 +106,9 @@ def shifted(pose, metres):
 
 def test_it_takes_frames_follows_the_path_and_tells(live, walk):
     node = live()
-    node.topics['camera_info'](Fields(k=[CAMERA.fx, 0, CAMERA.cx, 0, CAMERA.fy, CAMERA.cy, 0, 0, 1]))
+    node.timer()
+    assert 'camera_info' in node.said.pop()
+    node.topics['camera_info'](Fields(p=[CAMERA.fx, 0, CAMERA.cx, 0, 0, CAMERA.fy, CAMERA.cy, 0, 0, 0, 1, 0]))
     path = lambda by: Fields(poses=[Fields(header=Fields(stamp=stamp(float(n))), pose=Fields(**dict(zip(('position', 'orientation'), placed(shifted(np.eye(4), by[n]))))))
                                     for n in range(len(by))])
     drift = [0.0, 0.0, 0.2, 0.2, 0.2, 0.2]
@@ -118,15 +123,27 @@ def test_it_takes_frames_follows_the_path_and_tells(live, walk):
     Buffer.poses[6.5] = np.eye(4)
     node.topics['depth'](image(walk[0][1], 7.5, '16UC1'))
     assert node.session.frames == list(range(6)) and len(node.said) == 1 and 'pixels' in node.said[0]
+    poses = lambda: [node.hangs[n][1] for n in range(6)]
+    assert np.allclose(poses(), [shifted(walk[n][0], drift[n]) for n in range(6)])
+    node.topics['path'](Fields(poses=[]))  # all of it is gone: nothing moves
+    node.topics['path'](path(drift))
+    assert np.allclose(poses(), [shifted(walk[n][0], drift[n]) for n in range(6)])
     node.topics['path'](path([0.0] * 6))  # a loop closure
+    assert np.allclose(poses(), [pose for pose, _ in walk[:6]])
+    wrong = path([1.0] * 6)
+    wrong.poses[0].pose.orientation = Fields(x=0.0, y=0.0, z=0.0, w=0.0)
+    node.topics['path'](wrong)
+    assert 'stay where they were' in node.said.pop()
+    node.topics['path'](path([0.0] * 6))
     assert node.changed.is_set()
     node.update()
     expected = topple.parse(frames=[np.round(1000 * depth).astype(np.uint16) for _, depth in walk[:6]], camera_to_world=np.array(POSES[:6]),
-                            intrinsics=topple.stages.Intrinsics(CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy))
+                            intrinsics=topple.stages.Intrinsics(CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy), up=(0, 0, 1))
     found = node.session.scene
     assert len(found.result.objects) == len(expected.objects) > 2
     told = json.loads(node.topics['things'][0].data)
     assert [(t['id'], t['change']) for t in told] == [(t.id, t.change) for t in found.things]
+    assert all(t['action'] or t['id'] == 0 for t in told) and all(len(t['middle_m']) == 3 for t in told)
     markers = node.topics['objects'][0].markers
     assert markers[0].action == Marker.DELETEALL and len(markers) > 3 and all(m.header.frame_id == 'map' for m in markers[1:])
     boxes = [m for m in markers[1:] if m.type == Marker.CUBE]

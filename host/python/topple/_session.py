@@ -10,7 +10,7 @@ from . import _topple
 from ._arrays import usage
 from ._device import open_device
 from ._frames import colour_image, depth_image, poses as _poses
-from ._options import option, options
+from ._options import named, option, options
 from .stages import Intrinsics, camera
 
 
@@ -38,6 +38,7 @@ class Session:
     camera has a neighbour in time next to it. The other options are those of parse(). One thread may add frames while another updates.
     Raises Error as parse() does."""
 
+    @named
     def __init__(self, intrinsics, *, device=None, voxel_m=0.0, up=None, disturbances=None, seed=1, density_kg_m3=700.0, friction=0.3,
                  tolerable_J=0.1, wind_m_s=12.0, forget_gone=True, max_frame_bytes=2_000_000_000):
         self._camera = camera(intrinsics, 'intrinsics')
@@ -45,8 +46,8 @@ class Session:
                                                'tolerable_J': tolerable_J, 'wind_m_s': wind_m_s})
         device = option('device', device)
         self._device = open_device(device) if isinstance(device, str) else device
-        self._forget_gone = bool(forget_gone)
-        self._max_frame_bytes = option('max_memory_bytes', max_frame_bytes)
+        self._forget_gone = option('forget_gone', forget_gone)
+        self._max_frame_bytes = option('max_frame_bytes', max_frame_bytes)
         self._session = None  # once the frames' size is known
 
     @classmethod
