@@ -177,12 +177,12 @@ class Session::State {
         remembered_ = std::move(remembered);
         return found;
     }
-    void checkpoint(const std::filesystem::path& file) const {
-        const auto frames = [this] {
-            const std::lock_guard lock(frames_mutex_);
-            return frames_;
-        };
-        live::Checkpoint{k_, colour_, frames(), remembered()}.write(file);
+    live::Checkpoint checkpoint() const {
+        // First what is remembered: frames may be newer than an update, but never older.
+        live::Checkpoint out{k_, colour_, {}, remembered()};
+        const std::lock_guard lock(frames_mutex_);
+        out.frames = frames_;
+        return out;
     }
     std::shared_ptr<const LiveScene> scene() const {
         const std::lock_guard lock(scene_mutex_);
@@ -349,7 +349,7 @@ std::shared_ptr<const LiveScene> Session::update() {
     return state_->update();
 }
 void Session::checkpoint(const std::filesystem::path& file) const {
-    state_->checkpoint(file);
+    state_->checkpoint().write(file);
 }
 std::shared_ptr<const LiveScene> Session::scene() const {
     return state_->scene();

@@ -276,6 +276,12 @@ TEST_F(Sessions, FramesComeWhileOthersReadAndUpdate) {
             std::this_thread::yield();
         }
     });
+    std::jthread keeper([&] {
+        while (!done) {
+            session.checkpoint(path("session.checkpoint"));
+            EXPECT_GE(Session::resume(path("session.checkpoint"), quick()).frames().size(), 4u);
+        }
+    });
     std::jthread updater([&] {
         session.update();
         session.update();
