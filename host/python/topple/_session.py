@@ -54,6 +54,8 @@ class Session:
     def resume(cls, path, **options):
         """Goes on from what checkpoint() wrote: its frames, their poses, and the things of its last update, whose ids stay. options: those of
         Session, but for its intrinsics, which the file has. scene is None until update()."""
+        if 'intrinsics' in options:
+            raise TypeError('resume() takes no intrinsics: those of the checkpoint count')
         session = cls(Intrinsics(1, 1, 0, 0), **options)
         session._session = _topple.Session(os.fspath(path), *session._how())
         return session
