@@ -34,6 +34,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 import topple
 from topple import geometry
+from topple.formats.frames import pose as pose_of
 
 
 def metres(image):
@@ -49,13 +50,7 @@ def metres(image):
 
 def matrix(position, turn):
     """(4, 4) of a place and a quaternion."""
-    x, y, z, w = np.array([turn.x, turn.y, turn.z, turn.w]) / np.linalg.norm([turn.x, turn.y, turn.z, turn.w])
-    out = np.eye(4)
-    out[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                   [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                   [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
-    out[:3, 3] = position.x, position.y, position.z
-    return out
+    return pose_of((turn.x, turn.y, turn.z, turn.w), (position.x, position.y, position.z))
 
 
 def seconds(stamp):
@@ -152,11 +147,10 @@ class Live(Node):
         """Parses what is there, and tells it."""
         self.changed.clear()
         found = self.session.update()
-        objects = {o.id: o for o in found.result.objects}
         told = [{'id': t.id, 'change': t.change, 'moved_m': t.moved_m} for t in found.things]
         for one, thing in zip(told, found.things):
             if thing.object >= 0:
-                o = objects[thing.object]
+                o = found.result.objects[thing.object]
                 one |= {'category': o.unsafety_category, 'action': o.action, 'middle_m': list(o.box_middle_m), 'size_m': list(o.size_m)}
         self.things.publish(String(data=json.dumps(told)))
         self.objects.publish(self.markers(found))
@@ -167,10 +161,9 @@ class Live(Node):
         out = MarkerArray()
         out.markers.append(Marker(action=Marker.DELETEALL))
         ids = {t.object: t.id for t in found.things}
-        items = {o.id: o for o in found.result.objects}
         turn = geometry.quaternion(geometry.room_axes(found.result).T)
         for box in geometry.boxes(found.result):
-            item = items[box.object]
+            item = found.result.objects[box.object]
             above = np.array([0, 0, box.size[2] / 2 + 0.05])
             for name, kind, size, lift in (('boxes', Marker.CUBE, box.size, 0 * above), ('words', Marker.TEXT_VIEW_FACING, (0, 0, 0.05), above)):
                 marker = Marker(ns=name, id=int(ids[item.id]), type=kind, action=Marker.ADD)

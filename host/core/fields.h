@@ -130,4 +130,24 @@ void list_fields(Io& io, List& list, const Fields& fields) {
     }
 }
 
+// A map, by ascending key: fields(io, value) lists those of one.
+template <class Io, class Map, class Fields>
+void map_fields(Io& io, Map& map, const Fields& fields) {
+    if constexpr (Io::writes) {
+        io(static_cast<std::uint64_t>(map.size()));
+        for (const auto& [key, value] : map) {
+            io(key);
+            fields(io, value);
+        }
+    } else {
+        const std::uint64_t count = io.count();
+        map.clear();
+        for (std::uint64_t n = 0; n < count; ++n) {
+            const auto key = io.template value<typename Map::key_type>();
+            io.expect(map.empty() || key > map.rbegin()->first);
+            fields(io, map[key]);
+        }
+    }
+}
+
 }  // namespace topple

@@ -19,26 +19,6 @@ namespace {
 // Changes with what is written below.
 const std::string mark = "topple session 1";
 
-// A map by ascending key: fields(io, key, value) lists those of one.
-template <class Io, class Map, class Fields>
-void map_fields(Io& io, Map& map, const Fields& fields) {
-    if constexpr (Io::writes) {
-        io(static_cast<std::uint64_t>(map.size()));
-        for (const auto& [key, value] : map) {
-            io(key);
-            fields(io, value);
-        }
-    } else {
-        const std::uint64_t count = io.count();
-        map.clear();
-        for (std::uint64_t n = 0; n < count; ++n) {
-            const auto key = io.template value<typename Map::key_type>();
-            io.expect(map.empty() || key > map.rbegin()->first);
-            fields(io, map[key]);
-        }
-    }
-}
-
 template <class Io, class Of>
 void intrinsics_fields(Io& io, Of& k) {
     io(k.width);

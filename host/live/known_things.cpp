@@ -108,26 +108,26 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
                    alike_mass * std::max(object.mass_kg, before_[b].mass_kg);
     };
     use_best(by_pixels(showed_, shown), before_of, taken);
+    // Of what is left those that are like each other, the nearest first.
+    const auto match_left = [&](const auto& may_be) {
+        std::vector<Match> pairs;
+        for (std::size_t b = 0; b < before_.size(); ++b)
+            for (std::size_t n = 0; n < count; ++n)
+                if (!taken[b] && before_of[n] == none && may_be(b, n) && like(b, n))
+                    pairs.push_back({-moved_m(b, n), b, n});
+        use_best(std::move(pairs), before_of, taken);
+    };
     // What no pixel shows, by its place.
-    std::vector<Match> in_place;
-    for (std::size_t b = 0; b < before_.size(); ++b)
-        for (std::size_t n = 0; n < count; ++n)
-            if (!taken[b] && before_of[n] == none && moved_m(b, n) < aside_m && like(b, n))
-                in_place.push_back({-moved_m(b, n), b, n});
-    use_best(std::move(in_place), before_of, taken);
+    match_left([&](std::size_t b, std::size_t n) { return moved_m(b, n) < aside_m; });
     Showed shows;
     for (const auto& [frame, pixels] : shown) shows[frame] = pixels.object;
     const std::vector<double> gone = shares(before_.size(), showed_, shown, &Shown::gone);
     const std::vector<double> came = shares(count, shows, shown, &Shown::came);
 
-    std::vector<Match> elsewhere;
-    for (std::size_t b = 0; b < before_.size(); ++b)
-        for (std::size_t n = 0; n < count; ++n)
-            if (!taken[b] && before_of[n] == none && gone[b] >= most_of_it &&
-                came[n] >= most_of_it && like(b, n))
-                elsewhere.push_back({-moved_m(b, n), b, n});
-    std::vector<bool> was_taken = taken;
-    use_best(std::move(elsewhere), before_of, taken);
+    const std::vector<bool> was_taken = taken;
+    match_left([&](std::size_t b, std::size_t n) {
+        return gone[b] >= most_of_it && came[n] >= most_of_it;
+    });
 
     std::vector<Before> now(count);
     bool named = building != before_.end();  // a building, with the number 0

@@ -14,18 +14,14 @@ class PySession {
     PySession(const std::array<std::uint32_t, 2>& size, const std::array<double, 5>& camera,
               const std::shared_ptr<SharedDevice>& device, ParseOptions options, bool forget_gone,
               std::uint64_t max_frame_bytes)
-        : camera_(camera),
-          session_(intrinsics(size[0], size[1], camera), std::nullopt,
+        : session_(intrinsics(size[0], size[1], camera), std::nullopt,
                    session_options(device, std::move(options), forget_gone, max_frame_bytes)) {}
     PySession(const std::string& checkpoint, const std::shared_ptr<SharedDevice>& device,
               ParseOptions options, bool forget_gone, std::uint64_t max_frame_bytes)
         : session_(unlocked([&] {
               return Session::resume(checkpoint, session_options(device, std::move(options),
                                                                  forget_gone, max_frame_bytes));
-          })) {
-        const Intrinsics& k = session_.intrinsics();
-        camera_ = {k.fx, k.fy, k.cx, k.cy, k.depth_scale};
-    }
+          })) {}
     void checkpoint(const std::string& file) const {
         unlocked([&] { session_.checkpoint(file); });
     }
@@ -67,7 +63,8 @@ class PySession {
     FramesView seen(const PyFrame& frame, const py::array& pose) const {
         const std::array<std::uint32_t, 2> size{static_cast<std::uint32_t>(frame.first.shape(1)),
                                                 static_cast<std::uint32_t>(frame.first.shape(0))};
-        return frames_view({frame}, size, pose, camera_, "frame");
+        const Intrinsics& k = session_.intrinsics();
+        return frames_view({frame}, size, pose, {k.fx, k.fy, k.cx, k.cy, k.depth_scale}, "frame");
     }
     static py::object described(const LiveScene& found) {
         auto parsed = std::make_shared<Parsed>();
@@ -78,7 +75,6 @@ class PySession {
                 py::make_tuple(thing.id, thing.object, to_string(thing.change), thing.moved_m));
         return py::make_tuple(parsed, things, found.frames);
     }
-    std::array<double, 5> camera_{};
     Session session_;
 };
 
