@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory_resource>
+#include <numeric>
+#include <optional>
 #include <utility>
 
+#include "core/sorted_order.h"
 #include "core/vectors.h"
 #include "solids/error_quadric.h"
 #include "solids/vertex_rings.h"
@@ -35,26 +39,18 @@ class Simplifier {
                   [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v), normal); });
     }
 
-    void run() {
-        found_in_.assign(around_.size(), 0);
-        // A vertex that can't go is asked again once something around it has changed.
-        std::vector<bool> asked(around_.size(), false);
-        std::vector<std::size_t> changed(around_.size(), 0);  // in which round
-        bool any = true;
-        for (std::size_t round = 1; any; ++round) {
-            any = false;
-            for (std::uint32_t v = 0; v < around_.size(); ++v) {
-                // Changes of one round lie apart, or long fans would arise.
-                if (around_[v].empty() || asked[v] || changed[v] == round) continue;
-                asked[v] = true;
-                if (!remove(v)) continue;
-                any = true;
-                for (const std::uint32_t n : neighbours_) {
-                    asked[n] = false;
-                    changed[n] = round;
-                }
-            }
-        }
+    // First within blocks, by all threads: what lies in one of them with all around it depends on
+    // nothing outside. Then what is left, at their borders mostly.
+    void run(ThreadPool& pool) {
+        asked_.assign(around_.size(), 0);
+        changed_.assign(around_.size(), 0);
+        const std::vector<std::vector<std::uint32_t>> within = inner_vertices(pool);
+        std::vector<Workspace> work(within.size() + 1);
+        pool.each(within.size(), 1, [&](std::size_t b) { merge_among(within[b], work[b]); });
+        changed_.assign(around_.size(), 0);
+        std::vector<std::uint32_t> all(around_.size());
+        std::iota(all.begin(), all.end(), 0U);
+        merge_among(std::move(all), work.back());
     }
 
     // Takes what is no longer used out of the mesh.
@@ -80,7 +76,6 @@ class Simplifier {
         mesh_.facet.resize(triangles);
     }
 
-  private:
     Vec3 area(const std::array<std::uint32_t, 3>& t) const {
         const Vec3& p = mesh_.vertex[t[0]];
         return cross(minus(mesh_.vertex[t[1]], p), minus(mesh_.vertex[t[2]], p));
@@ -169,33 +164,77 @@ class Simplifier {
         return false;
     }
 
-    void find_neighbours(std::uint32_t v) {
-        neighbours_.clear();
-        ++search_;
-        for (const std::uint32_t t : around_[v]) {
-            const std::uint32_t n = after(mesh_.triangle[t], v);
-            neighbours_.push_back(n);
-            found_in_[n] = search_;
+    // What one thread works with.
+    struct Workspace {
+        std::pmr::monotonic_buffer_resource rings;
+        std::vector<std::uint32_t> neighbours;  // of the vertex that is looked at
+        std::vector<std::uint32_t> gained;
+        std::vector<std::pair<double, std::uint32_t>> nearest;
+    };
+
+    // Of each block of voxels, in the order of the mesh: the vertices whose neighbours all are of
+    // the same block.
+    std::vector<std::vector<std::uint32_t>> inner_vertices(ThreadPool& pool) const {
+        constexpr unsigned block_bits = 5, key_bits = 21;
+        constexpr std::uint64_t chunk = 1 << 12;
+        std::vector<std::uint64_t> block(around_.size());
+        pool.each(block.size(), chunk, [&](std::size_t v) {
+            for (const std::int32_t c : mesh_.corner[v])
+                block[v] = block[v] << key_bits |
+                           (static_cast<std::uint32_t>(c >> block_bits) & ((1U << key_bits) - 1));
+        });
+        std::vector<std::vector<std::uint32_t>> out;
+        std::optional<std::uint64_t> last;
+        for (const std::uint32_t v : sorted_order(block, pool)) {
+            if (last != block[v]) out.emplace_back();
+            last = block[v];
+            const bool inner = std::ranges::all_of(around_[v], [&](std::uint32_t t) {
+                return block[after(mesh_.triangle[t], v)] == block[v];
+            });
+            if (inner) out.back().push_back(v);
+        }
+        return out;
+    }
+
+    void merge_among(std::vector<std::uint32_t> vertices, Workspace& work) {
+        bool any = true;
+        for (std::uint32_t round = 1; any; ++round) {
+            any = false;
+            std::erase_if(vertices, [&](std::uint32_t v) { return around_[v].empty(); });
+            for (const std::uint32_t v : vertices) {
+                // Changes of one round lie apart, or long fans would arise.
+                if (around_[v].empty() || asked_[v] != 0 || changed_[v] == round) continue;
+                asked_[v] = 1;
+                if (!remove(v, work)) continue;
+                any = true;
+                for (const std::uint32_t n : work.neighbours) {
+                    asked_[n] = 0;
+                    changed_[n] = round;
+                }
+            }
         }
     }
 
     // Merges v into the nearest neighbour that can take it.
-    bool remove(std::uint32_t v) {
-        find_neighbours(v);
-        nearest_.clear();
+    bool remove(std::uint32_t v, Workspace& work) {
+        work.neighbours.clear();
+        for (const std::uint32_t t : around_[v])
+            work.neighbours.push_back(after(mesh_.triangle[t], v));
+        work.nearest.clear();
         const bool bordered = is_bordered(v);
-        for (const std::uint32_t u : neighbours_) {
+        for (const std::uint32_t u : work.neighbours) {
             // No error is less than 0, but for rounding.
             const double own = quadric_[v].at(mesh_.vertex[u]);
             if (own > 2 * most_ || own + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
             const Vec3 way = minus(mesh_.vertex[u], mesh_.vertex[v]);
-            nearest_.emplace_back(dot(way, way), u);
+            work.nearest.emplace_back(dot(way, way), u);
         }
-        std::ranges::sort(nearest_);
-        for (const auto& [distance, u] : nearest_) {
-            if ((bordered && !runs_along_border(v, u)) || !stays_closed(u) || !stays_flat(v, u))
+        std::ranges::sort(work.nearest);
+        for (const auto& [distance, u] : work.nearest) {
+            if ((bordered && !runs_along_border(v, u)) || !stays_closed(u, work.neighbours) ||
+                !stays_flat(v, u, work.neighbours))
                 continue;
-            merge(v, u);
+            merge(v, u, work);
             return true;
         }
         return false;
@@ -205,18 +244,22 @@ class Simplifier {
             if (after(mesh_.triangle[t], v) == u) return is_border(t, v, u);
         return false;
     }
-    // The link condition: the two have no neighbours in common but those across their edge.
-    bool stays_closed(std::uint32_t u) const {
+    // The link condition: u and the vertex that has these neighbours have none in common but those
+    // across their edge.
+    bool stays_closed(std::uint32_t u, std::span<const std::uint32_t> neighbours) const {
         std::size_t common = 0;
-        for (const std::uint32_t t : around_[u])
-            common += found_in_[after(mesh_.triangle[t], u)] == search_;
+        for (const std::uint32_t t : around_[u]) {
+            const std::uint32_t n = after(mesh_.triangle[t], u);
+            common += std::ranges::find(neighbours, n) != neighbours.end();
+        }
         return common == 2;
     }
     // No triangle turns far or becomes a line, and no edge too long.
-    bool stays_flat(std::uint32_t v, std::uint32_t u) const {
+    bool stays_flat(std::uint32_t v, std::uint32_t u,
+                    std::span<const std::uint32_t> neighbours) const {
         constexpr double turn = 0.5;     // cosine
         constexpr double narrow = 0.01;  // height over the longest side
-        for (const std::uint32_t n : neighbours_) {
+        for (const std::uint32_t n : neighbours) {
             const Vec3 edge = minus(mesh_.vertex[n], mesh_.vertex[u]);
             if (dot(edge, edge) > longest_) return false;
         }
@@ -235,13 +278,13 @@ class Simplifier {
         }
         return true;
     }
-    void merge(std::uint32_t v, std::uint32_t u) {
-        gained_.clear();
+    void merge(std::uint32_t v, std::uint32_t u, Workspace& work) {
+        work.gained.clear();
         for (const std::uint32_t t : around_[v]) {
             auto& triangle = mesh_.triangle[t];
             if (std::ranges::find(triangle, u) == triangle.end()) {
                 std::ranges::replace(triangle, v, u);
-                gained_.push_back(t);
+                work.gained.push_back(t);
                 continue;
             }
             for (const std::uint32_t w : triangle)
@@ -249,7 +292,7 @@ class Simplifier {
             triangle = {0, 0, 0};
         }
         around_.clear(v);
-        around_.append(u, gained_);
+        around_.append(u, work.gained, work.rings);
         quadric_[u].add(quadric_[v]);
     }
 
@@ -258,11 +301,10 @@ class Simplifier {
     double most_, longest_;  // squared
     VertexRings around_;     // of a vertex that is gone, none
     std::vector<ErrorQuadric> quadric_;
-    std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at
-    std::vector<std::uint64_t> found_in_;    // of each vertex: the last search that found it there
-    std::uint64_t search_ = 0;
-    std::vector<std::uint32_t> gained_;
-    std::vector<std::pair<double, std::uint32_t>> nearest_;
+    // By vertex: whether it can't go before something around it has changed, and in which round
+    // something has.
+    std::vector<std::uint8_t> asked_;
+    std::vector<std::uint32_t> changed_;
 };
 
 }  // namespace
@@ -271,7 +313,7 @@ void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
               const SimplifyOptions& options, ThreadPool& pool) {
     Simplifier simplifier(mesh, patches, options);
     simplifier.find_quadrics(pool);
-    simplifier.run();
+    simplifier.run(pool);
     simplifier.compact();
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,50 +14,50 @@
 namespace topple::solids {
 
 // The triangles around each vertex, side by side in one array: a vertex that gains some gets a new
-// place at its end.
+// place. Several threads may change the rings of different vertices.
 class VertexRings {
   public:
-    explicit VertexRings(const SurfaceMesh& mesh) : place_(mesh.vertex.size()) {
+    explicit VertexRings(const SurfaceMesh& mesh)
+        : place_(mesh.vertex.size()), triangles_(3 * mesh.triangle.size()) {
         for (const auto& t : mesh.triangle)
             for (const std::uint32_t v : t) ++place_[v].count;
-        std::size_t first = 0;
+        std::uint32_t* first = triangles_.data();
         for (Place& p : place_) {
             p.first = first;
             first += std::exchange(p.count, 0);
         }
-        triangles_.resize(first);
         for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t)
             for (const std::uint32_t v : mesh.triangle[t]) {
                 Place& p = place_[v];
-                triangles_[p.first + p.count++] = t;
+                p.first[p.count++] = t;
             }
     }
     std::size_t size() const { return place_.size(); }
     std::span<const std::uint32_t> operator[](std::uint32_t v) const {
-        return std::span(triangles_).subspan(place_[v].first, place_[v].count);
+        return {place_[v].first, place_[v].count};
     }
     void clear(std::uint32_t v) { place_[v].count = 0; }
     void erase(std::uint32_t v, std::uint32_t triangle) {
-        const auto begin = triangles_.begin() + static_cast<std::ptrdiff_t>(place_[v].first);
-        const auto end = begin + place_[v].count;
-        const auto kept = std::remove(begin, end, triangle);
-        place_[v].count = static_cast<std::uint32_t>(kept - begin);
+        Place& p = place_[v];
+        p.count = static_cast<std::uint32_t>(std::remove(p.first, p.first + p.count, triangle) -
+                                             p.first);
     }
-    void append(std::uint32_t v, std::span<const std::uint32_t> more) {
+    // room: for the vertex's new place, one thread's at a time. It must live as long as this.
+    void append(std::uint32_t v, std::span<const std::uint32_t> more,
+                std::pmr::memory_resource& room) {
         if (more.empty()) return;
         Place& p = place_[v];
-        const std::size_t first = triangles_.size();
-        triangles_.resize(first + p.count + more.size());
-        std::copy_n(triangles_.begin() + static_cast<std::ptrdiff_t>(p.first), p.count,
-                    triangles_.begin() + static_cast<std::ptrdiff_t>(first));
-        std::ranges::copy(more, triangles_.begin() + static_cast<std::ptrdiff_t>(first + p.count));
-        p.first = first;
-        p.count += static_cast<std::uint32_t>(more.size());
+        const std::size_t count = p.count + more.size();
+        auto* first = static_cast<std::uint32_t*>(
+            room.allocate(count * sizeof(std::uint32_t), alignof(std::uint32_t)));
+        std::copy_n(p.first, p.count, first);
+        std::ranges::copy(more, first + p.count);
+        p = {first, static_cast<std::uint32_t>(count)};
     }
 
   private:
     struct Place {
-        std::size_t first = 0;
+        std::uint32_t* first = nullptr;
         std::uint32_t count = 0;
     };
     std::vector<Place> place_;
