@@ -73,11 +73,12 @@ STRUCT(SixFillSweepParams) {
     uint stride;       // words from a voxel to the next along the axis: 64, 8 or 1
     uint stride_high;  // between the lines of a leaf's cross-section, by the line's upper
     uint stride_low;   // and lower three bits
+    uint direction;    // backward along the axis: 0, 2 or 4; the next one is forward
 } STRUCT_END(SixFillSweepParams)
 
 // six_fill_vote
 STRUCT(SixFillVoteParams) {
-    uint count;  // voxels
+    uint count;  // voxels, of whole leaves
     uint votes;  // directions that must agree
     uint columns;  // 1: what lies hidden under a top, down to where it stands, is filled, too
 } STRUCT_END(SixFillVoteParams)

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/short_number.h"
+#include "core/thread_pool.h"
 #include "six_fill_sweep.hpp"
 #include "six_fill_vote.hpp"
 #include "topple/error.h"
@@ -24,15 +25,17 @@ constexpr std::int32_t max_primitives = 65533;  // cells travel as 16 bits
 // What six_fill_sweep calls cells.
 std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
                                     const std::vector<LeafTable::Leaf>& leaves,
-                                    const std::vector<bool>& fills, std::int32_t lowest) {
+                                    const std::vector<bool>& fills, std::int32_t lowest,
+                                    ThreadPool& threads) {
+    constexpr std::uint64_t leaves_at_once = 64;
     std::vector<std::uint32_t> cells(leaves.size() * 512, 1);
-    for (std::size_t n = 0; n < leaves.size(); ++n) {
+    threads.each(leaves.size(), leaves_at_once, [&](std::size_t n) {
         for (std::size_t v = 0; v < 512; ++v) {
             if (leaves[n][2] * 8 + static_cast<std::int32_t>(v & 7) < lowest)
                 cells[n * 512 + v] = 2;
         }
         const auto* state = g.state->tree().probeConstLeaf(origin_of(leaves[n]));
-        if (!state) continue;
+        if (!state) return;
         const auto* label = g.primitive->tree().probeConstLeaf(origin_of(leaves[n]));
         for (openvdb::Index v = 0; v < 512; ++v) {
             if (state->getValue(v) == static_cast<std::int32_t>(State::invisible)) continue;
@@ -44,13 +47,13 @@ std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
             }
             cells[n * 512 + v] = cell;
         }
-    }
+    });
     return cells;
 }
 
-// Words for each voxel that is swept: its cell, six hits and what becomes of it on the device; that
-// and why on the host.
-constexpr std::uint64_t sweep_words = 9;
+// Words for each voxel that is swept: its cell and, of its leaf, what rays bring there on the
+// device; its cell, then what becomes of it and why, on the host.
+constexpr std::uint64_t sweep_words = 3;
 
 void check_memory(const device::Device& device, const VoxelScene::Grids& g, std::uint64_t leaves) {
     const std::uint64_t bytes = leaves * 512 * sizeof(std::uint32_t) * sweep_words;
@@ -107,32 +110,32 @@ Runs runs_along(const VoxelScene::Grids& g, const std::vector<LeafTable::Leaf>& 
 
 // By voxel of the leaves.
 struct Votes {
-    std::vector<std::uint16_t> taken;  // as six_fill_vote says it
+    std::vector<std::uint16_t> taken;  // primitive + 1, or 0
     std::vector<Basis> basis;          // of those
 };
 Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
                      const std::vector<LeafTable::Leaf>& leaves, std::vector<std::uint32_t> cells,
                      const FillOptions& options) {
+    constexpr std::size_t entries_of_leaf = 6 * 64;
     const std::size_t count = cells.size();
     const device::Buffer<std::uint32_t> cell_words(device, std::span<const std::uint32_t>(cells),
                                                    "fill cells");
     cells = {};
-    std::vector<device::Buffer<std::uint32_t>> hits, keep;
-    for (int side = 0; side < 6; ++side) hits.emplace_back(device, count, "fill hits");
-    const device::Buffer<std::uint32_t> filled(device, count, "filled voxels");
+    const device::Buffer<std::uint32_t> entries(device, leaves.size() * entries_of_leaf,
+                                                "fill entries");
+    std::vector<device::Buffer<std::uint32_t>> keep;
+    keep.reserve(12);
     device::Queue queue(device);
-    for (int axis = 0; axis < 3; ++axis) {
-        const Runs runs = runs_along(g, leaves, axis);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const Runs runs = runs_along(g, leaves, static_cast<int>(axis));
         const auto buffer =
             [&](const std::vector<std::uint32_t>& data) -> device::Buffer<std::uint32_t>& {
             return keep.emplace_back(device, std::span<const std::uint32_t>(data), "fill runs");
         };
-        keep.reserve(12);
         const auto& first = buffer(runs.first);
         const auto& length = buffer(runs.length);
         const auto& order = buffer(runs.leaf);
         const auto& ends = buffer(runs.ends);
-        const std::size_t side = static_cast<std::size_t>(axis) * 2;
         constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64}, low[3] = {1, 1, 8};
         queue.add<kernels::SixFillSweep>(
             runs.first.size() * 64,
@@ -141,47 +144,38 @@ Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
              .run_leaf = order,
              .run_ends = ends,
              .cells = cell_words,
-             .backward = hits[side],
-             .forward = hits[side + 1]},
+             .entries = entries},
             {.run_count = static_cast<std::uint32_t>(runs.first.size()),
              .stride = stride[axis],
              .stride_high = high[axis],
-             .stride_low = low[axis]});
+             .stride_low = low[axis],
+             .direction = 2 * axis});
     }
-    // Calls use(voxel, what becomes of it), in portions that take little memory.
-    const auto vote = [&](unsigned votes, bool columns, const auto& use) {
-        queue.add<kernels::SixFillVote>(count,
-                                        {.cells = cell_words,
-                                         .hit_0 = hits[0],
-                                         .hit_1 = hits[1],
-                                         .hit_2 = hits[2],
-                                         .hit_3 = hits[3],
-                                         .hit_4 = hits[4],
-                                         .hit_5 = hits[5],
-                                         .filled = filled},
-                                        {.count = static_cast<std::uint32_t>(count),
-                                         .votes = votes,
-                                         .columns = columns ? 1u : 0u});
-        queue.run();
-        std::vector<std::uint32_t> portion;
-        for (std::size_t first = 0; first < count; first += portion.size()) {
-            portion.resize(std::min(count - first, std::size_t{1} << 20));
-            filled.download(portion, first);
-            for (std::size_t n = 0; n < portion.size(); ++n) use(first + n, portion[n]);
-        }
-    };
+    // In portions, for memory.
+    constexpr std::size_t leaves_at_once = std::size_t{1} << 14;
+    const std::size_t most = std::min(leaves.size(), leaves_at_once);
+    const device::Buffer<std::uint32_t> filled(device, most * 512, "filled voxels");
     Votes out{std::vector<std::uint16_t>(count), std::vector<Basis>(count, Basis::column)};
-    vote(options.votes, options.columns, [&](std::size_t n, std::uint32_t taken) {
-        out.taken[n] = static_cast<std::uint16_t>(taken);
-    });
-    // The same with more to ask for tells what each was filled by.
-    const auto mark = [&](unsigned votes, Basis basis) {
-        vote(votes, false, [&](std::size_t n, std::uint32_t taken) {
-            if (taken > 0) out.basis[n] = basis;
-        });
-    };
-    mark(options.votes, Basis::two_votes);
-    mark(std::max(options.votes, 3u), Basis::three_votes);
+    std::vector<std::uint32_t> taken(most * 512);
+    for (std::size_t leaf = 0; leaf < leaves.size(); leaf += most) {
+        const std::size_t some = std::min(most, leaves.size() - leaf), first = leaf * 512;
+        queue.add<kernels::SixFillVote>(
+            some * 512,
+            {.cells = cell_words.slice(first, some * 512),
+             .entries = entries.slice(leaf * entries_of_leaf, some * entries_of_leaf),
+             .filled = filled},
+            {.count = static_cast<std::uint32_t>(some * 512),
+             .votes = options.votes,
+             .columns = options.columns ? 1u : 0u});
+        queue.run();
+        taken.resize(some * 512);
+        filled.download(taken);
+        for (std::size_t n = 0; n < taken.size(); ++n) {
+            const std::uint32_t votes = taken[n] >> 16;
+            out.taken[first + n] = static_cast<std::uint16_t>(taken[n]);
+            if (votes > 0) out.basis[first + n] = votes < 3 ? Basis::two_votes : Basis::three_votes;
+        }
+    }
     return out;
 }
 
@@ -212,8 +206,8 @@ std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene
     const auto leaves = leaves_to_fill(g, fills, options.votes, options.columns, options.lowest);
     if (leaves.empty()) return {};
     check_memory(device, g, leaves.size());
-    const Votes votes =
-        sweep_and_vote(device, g, leaves, cells_of(g, leaves, fills, options.lowest), options);
+    const Votes votes = sweep_and_vote(
+        device, g, leaves, cells_of(g, leaves, fills, options.lowest, device.threads()), options);
     std::vector<Claim> claims;
     in_voxel_order(leaves, [&](std::size_t leaf, std::size_t offset, const Voxel& at) {
         const std::size_t n = leaf * 512 + offset;

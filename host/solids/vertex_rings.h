@@ -39,8 +39,8 @@ class VertexRings {
     void clear(std::uint32_t v) { place_[v].count = 0; }
     void erase(std::uint32_t v, std::uint32_t triangle) {
         Place& p = place_[v];
-        p.count = static_cast<std::uint32_t>(std::remove(p.first, p.first + p.count, triangle) -
-                                             p.first);
+        p.count =
+            static_cast<std::uint32_t>(std::remove(p.first, p.first + p.count, triangle) - p.first);
     }
     // room: for the vertex's new place, one thread's at a time. It must live as long as this.
     void append(std::uint32_t v, std::span<const std::uint32_t> more,

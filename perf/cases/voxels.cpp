@@ -208,7 +208,7 @@ Prepared six_fill_sweep(device::Device& device) {
     struct Buffers {
         device::Buffer<std::uint32_t> cells;
         std::vector<Axis> axes;
-        std::vector<device::Buffer<std::uint32_t>> hits;
+        device::Buffer<std::uint32_t> entries;
     };
     auto on = std::make_shared<Buffers>();
     on->cells = upload(device, cells, "cells");
@@ -230,15 +230,14 @@ Prepared six_fill_sweep(device::Device& device) {
                             upload(device, order, "leaf"),
                             upload(device, Words(first.size(), 3), "ends"),
                             static_cast<std::uint32_t>(first.size())});
-        on->hits.emplace_back(device, cells.size(), "backward");
-        on->hits.emplace_back(device, cells.size(), "forward");
     }
+    on->entries = {device, std::size_t{6} * 64 * leaves, "entries"};
     const double voxels = 3.0 * static_cast<double>(cells.size());
-    return {{voxels, "voxels", 12 * voxels, 2 * 8 * voxels},
+    return {{voxels, "voxels", 5 * voxels, 2 * 5 * voxels},
             [on](device::Queue& queue) {
                 constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64},
                                         low[3] = {1, 1, 8};
-                for (std::size_t a = 0; a < 3; ++a) {
+                for (std::uint32_t a = 0; a < 3; ++a) {
                     const Axis& axis = on->axes[a];
                     queue.add<kernels::SixFillSweep>(std::uint64_t{64} * axis.runs,
                                                      {.run_first = axis.first,
@@ -246,55 +245,41 @@ Prepared six_fill_sweep(device::Device& device) {
                                                       .run_leaf = axis.leaf,
                                                       .run_ends = axis.ends,
                                                       .cells = on->cells,
-                                                      .backward = on->hits[2 * a],
-                                                      .forward = on->hits[2 * a + 1]},
+                                                      .entries = on->entries},
                                                      {.run_count = axis.runs,
                                                       .stride = stride[a],
                                                       .stride_high = high[a],
-                                                      .stride_low = low[a]});
+                                                      .stride_low = low[a],
+                                                      .direction = 2 * a});
                 }
             },
             {},
-            [on] {
-                Hash hash;
-                for (const auto& hits : on->hits) hash.add(hits.download());
-                return hash.value();
-            }};
+            [on] { return Hash().add(on->entries.download()).value(); }};
 }
 
 Prepared six_fill_vote(device::Device& device) {
-    constexpr std::uint32_t count = 1u << 22;
+    constexpr std::uint32_t leaves = 1u << 13, count = 512 * leaves;
     scenes::Random random(7);
     struct Buffers {
-        device::Buffer<std::uint32_t> cells;
-        std::vector<device::Buffer<std::uint32_t>> hit;
-        device::Buffer<std::uint32_t> filled;
+        device::Buffer<std::uint32_t> cells, entries, filled;
     };
     auto on = std::make_shared<Buffers>();
+    const auto any = [&] {
+        return random.chance(0.3) ? 0u : static_cast<std::uint32_t>(random.integer(2, 9));
+    };
     Words words(count);
-    for (std::uint32_t& w : words) w = random.chance(0.8) ? 1u : 0u;
+    for (std::uint32_t& w : words) w = random.chance(0.9) ? 1u : any();
     on->cells = upload(device, words, "cells");
-    for (int k = 0; k < 6; ++k) {
-        for (std::uint32_t& w : words) {
-            w = random.chance(0.3) ? 0u
-                                   : static_cast<std::uint32_t>(random.integer(1, 9) |
-                                                                random.integer(1, 300) << 16);
-        }
-        on->hit.push_back(upload(device, words, "hit"));
-    }
+    words.resize(std::size_t{6 * 64} * leaves);
+    for (std::uint32_t& w : words)
+        w = any() | static_cast<std::uint32_t>(random.integer(0, 300)) << 16;
+    on->entries = upload(device, words, "entries");
     on->filled = {device, count, "filled"};
-    return {{count, "voxels", 32.0 * count, 6 * 20.0 * count},
+    return {{count, "voxels", 11.0 * count, 6 * 40.0 * count},
             [on](device::Queue& queue) {
-                queue.add<kernels::SixFillVote>(count,
-                                                {.cells = on->cells,
-                                                 .hit_0 = on->hit[0],
-                                                 .hit_1 = on->hit[1],
-                                                 .hit_2 = on->hit[2],
-                                                 .hit_3 = on->hit[3],
-                                                 .hit_4 = on->hit[4],
-                                                 .hit_5 = on->hit[5],
-                                                 .filled = on->filled},
-                                                {.count = count, .votes = 2, .columns = 1});
+                queue.add<kernels::SixFillVote>(
+                    count, {.cells = on->cells, .entries = on->entries, .filled = on->filled},
+                    {.count = count, .votes = 2, .columns = 1});
             },
             {},
             [on] { return Hash().add(on->filled.download()).value(); }};

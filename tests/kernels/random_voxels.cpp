@@ -65,32 +65,26 @@ void six_fill_sweep(RandomBatch& to, Random& random, std::uint32_t size) {
                                          .run_leaf = to.in(shuffled(random, size)),
                                          .run_ends = to.in(naturals(random, runs, 4)),
                                          .cells = to.in(cells),
-                                         .backward = to.out<std::uint32_t>(512 * size),
-                                         .forward = to.out<std::uint32_t>(512 * size)},
+                                         .entries = to.inout(naturals(random, 384 * size))},
                                         {.run_count = runs,
                                          .stride = stride[axis],
                                          .stride_high = high[axis],
-                                         .stride_low = low[axis]});
+                                         .stride_low = low[axis],
+                                         .direction = 2 * axis});
 }
 
-void six_fill_vote(RandomBatch& to, Random& random, std::uint32_t size) {
-    const auto hits = [&] {
-        Words out = naturals(random, size, 7);
-        // Few labels and distances, so that ties are common; now and then any.
-        for (auto& hit : out) hit = random.below(30) ? hit | random.below(3) << 16 : random.word();
-        return to.in(out);
-    };
+void six_fill_vote(RandomBatch& to, Random& random, std::uint32_t leaves) {
+    // Few labels and distances, so that ties are common; now and then any.
+    Words cells = naturals(random, 512 * leaves, 12), entries = naturals(random, 384 * leaves, 7);
+    for (auto& cell : cells) cell = cell < 6 ? cell : cell == 6 ? 65535u : 1u;
+    for (auto& entry : entries)
+        entry = random.below(30) ? entry | random.below(3) << 16 : random.word();
     to.queue.add<kernels::SixFillVote>(
-        size,
-        {.cells = to.in(naturals(random, size, 3)),
-         .hit_0 = hits(),
-         .hit_1 = hits(),
-         .hit_2 = hits(),
-         .hit_3 = hits(),
-         .hit_4 = hits(),
-         .hit_5 = hits(),
-         .filled = to.out<std::uint32_t>(size)},
-        {.count = size, .votes = 1 + random.below(6), .columns = random.below(2)});
+        std::uint64_t{512} * leaves,
+        {.cells = to.in(cells),
+         .entries = to.in(entries),
+         .filled = to.out<std::uint32_t>(512 * leaves)},
+        {.count = 512 * leaves, .votes = 1 + random.below(6), .columns = random.below(2)});
 }
 
 void segmented_sum(RandomBatch& to, Random& random, std::uint32_t size) {
@@ -133,7 +127,7 @@ std::span<const RandomCase> random_voxels() {
     using namespace random_voxel;
     static constexpr RandomCase cases[] = {
         {"carve_leaves", 300, carve_leaves},   {"carve", 4, carve},
-        {"six_fill_sweep", 6, six_fill_sweep}, {"six_fill_vote", 3000, six_fill_vote},
+        {"six_fill_sweep", 6, six_fill_sweep}, {"six_fill_vote", 6, six_fill_vote},
         {"segmented_sum", 200, segmented_sum}, {"cell_share", 500, cell_share},
     };
     return cases;

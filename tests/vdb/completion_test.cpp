@@ -210,7 +210,7 @@ TEST(Completion, WhatHangsTogetherWithNothingSeenIsNotSolid) {
 TEST(Completion, WhatIsTooLargeToFillIsRefused) {
     const auto device = device::open_device("native", 2);
     const auto memory = static_cast<double>(device->info().limits.memory_bytes);
-    const auto blocks = static_cast<int>(std::cbrt(1.5 * memory / 36) / 8);
+    const auto blocks = static_cast<int>(std::cbrt(1.5 * memory / 12) / 8);
     PointCloud cloud;
     for (int axis = 0; axis < 3; ++axis) {
         for (int n = 0; n < 2 * blocks * blocks; ++n) {
