@@ -40,11 +40,11 @@ CellPacking::CellPacking(const GridCell& lowest, const GridCell& highest, int re
     shift_x_ = shift_y_ + bits(1);
 }
 
-void CellGrid::resize(std::size_t count) {
+void CellGrid::resize(std::size_t count, bool with_spread) {
     for (auto* indices : {&x, &y, &z}) indices->resize(count);
     weight.resize(count);
     for (auto& plane : mean) plane.resize(count);
-    for (auto& plane : spread) plane.resize(count);
+    for (auto& plane : spread) plane.resize(with_spread ? count : 0);
 }
 
 namespace {
@@ -131,7 +131,8 @@ CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uin
             std::array<double, 6> spread{};
             for (std::size_t a = 0; a < 3; ++a)
                 at[a] = 0.5 * grid.mean[a][i] + ((index[a] & 1) != 0 ? 0.25 : -0.25);
-            for (std::size_t a = 0; a < 6; ++a) spread[a] = 0.25 * grid.spread[a][i];
+            for (std::size_t a = 0; a < 6 && !grid.spread[a].empty(); ++a)
+                spread[a] = 0.25 * grid.spread[a][i];
             sums.add(grid.weight[i], at, spread);
         }
         coarse.set_index(cell, halved(children[0]));

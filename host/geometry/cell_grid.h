@@ -96,11 +96,12 @@ CellMoments moments_of(const std::array<FloatColumn, 3>& cloud,
 struct CellGrid {
     double cell_m = 0;
     std::vector<std::int32_t> x, y, z;
-    std::vector<float> weight;                 // for the plane fit; 1 is an ordinary cell
-    std::array<std::vector<float>, 3> mean;    // of the cell's points
-    std::array<std::vector<float>, 6> spread;  // covariance xx yy zz xy xz yz, cells^2
+    std::vector<float> weight;               // for the plane fit; 1 is an ordinary cell
+    std::array<std::vector<float>, 3> mean;  // of the cell's points
+    // Covariance xx yy zz xy xz yz, cells^2; empty: 0 of all.
+    std::array<std::vector<float>, 6> spread;
     std::size_t size() const { return x.size(); }
-    void resize(std::size_t count);
+    void resize(std::size_t count, bool with_spread = true);
     Place index(std::size_t cell) const { return {x[cell], y[cell], z[cell]}; }
     void set_index(std::size_t cell, const GridCell& at);
     void set(std::size_t cell, const CellMoments& moments);

@@ -25,13 +25,14 @@ constexpr std::size_t preferred_tile = std::size_t{1} << 20;
 
 using Planes = std::initializer_list<std::span<const float>>;
 
-// The elements [first, last) of each plane, one plane after the other.
+// The elements [first, last) of each plane, one plane after the other; zeros of an empty one.
 device::Buffer<float> upload_planes(device::Device& device, const Planes& planes, std::size_t first,
                                     std::size_t last, const char* name) {
     device::Buffer<float> buffer(device, planes.size() * (last - first), name);
+    const std::vector<float> zeros(last - first);
     std::size_t to = 0;
     for (const auto& plane : planes) {
-        buffer.upload(plane.subspan(first, last - first), to);
+        buffer.upload(plane.empty() ? std::span(zeros) : plane.subspan(first, last - first), to);
         to += last - first;
     }
     return buffer;

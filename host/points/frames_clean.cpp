@@ -86,7 +86,7 @@ std::uint8_t level_for(double sigma, double cell_m) {
 CellGrid grid_of(const FusedCells& fused, ThreadPool& pool) {
     CellGrid grid;
     grid.cell_m = fused.cell_m;
-    grid.resize(fused.cells.size());
+    grid.resize(fused.cells.size(), false);
     pool.each(fused.cells.size(), fused_chunk, [&](std::size_t i) {
         const CellSums& cell = fused.cells[i];
         const std::array<std::int32_t*, 3> index{&grid.x[i], &grid.y[i], &grid.z[i]};
@@ -168,6 +168,7 @@ void bin_anew(FusedCells& fused, ThreadPool& pool) {
         parts.push_back(cells.subspan(first, std::min(part, cells.size() - first)));
     tables.add(parts, pool);
     const CellPlaces sorted = tables.sorted(pool);
+    fused.cells = {};  // before there are others
     fused.cells = SortedCells(sorted.size(), boost::container::default_init);
     pool.each(sorted.size(), fused_chunk, [&](std::size_t i) { fused.cells[i] = *sorted[i]; });
 }
