@@ -70,10 +70,7 @@ STRUCT(CarveParams) {
 // six_fill_sweep
 STRUCT(SixFillSweepParams) {
     uint run_count;
-    uint stride;       // words from a voxel to the next along the axis: 64, 8 or 1
-    uint stride_high;  // between the lines of a leaf's cross-section, by the line's upper
-    uint stride_low;   // and lower three bits
-    uint direction;    // backward along the axis: 0, 2 or 4; the next one is forward
+    uint direction;  // backward along the axis: 0, 2 or 4; the next one is forward
 } STRUCT_END(SixFillSweepParams)
 
 // six_fill_vote

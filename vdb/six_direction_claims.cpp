@@ -136,7 +136,6 @@ Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
         const auto& length = buffer(runs.length);
         const auto& order = buffer(runs.leaf);
         const auto& ends = buffer(runs.ends);
-        constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64}, low[3] = {1, 1, 8};
         queue.add<kernels::SixFillSweep>(
             runs.first.size() * 64,
             {.run_first = first,
@@ -145,11 +144,7 @@ Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
              .run_ends = ends,
              .cells = cell_words,
              .entries = entries},
-            {.run_count = static_cast<std::uint32_t>(runs.first.size()),
-             .stride = stride[axis],
-             .stride_high = high[axis],
-             .stride_low = low[axis],
-             .direction = 2 * axis});
+            {.run_count = static_cast<std::uint32_t>(runs.first.size()), .direction = 2 * axis});
     }
     // In portions, for memory.
     constexpr std::size_t leaves_at_once = std::size_t{1} << 14;

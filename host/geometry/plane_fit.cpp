@@ -29,10 +29,11 @@ using Planes = std::initializer_list<std::span<const float>>;
 device::Buffer<float> upload_planes(device::Device& device, const Planes& planes, std::size_t first,
                                     std::size_t last, const char* name) {
     device::Buffer<float> buffer(device, planes.size() * (last - first), name);
-    const std::vector<float> zeros(last - first);
+    std::vector<float> zeros;
     std::size_t to = 0;
     for (const auto& plane : planes) {
-        buffer.upload(plane.empty() ? std::span(zeros) : plane.subspan(first, last - first), to);
+        if (plane.empty()) zeros.resize(last - first);
+        buffer.upload(plane.empty() ? zeros : plane.subspan(first, last - first), to);
         to += last - first;
     }
     return buffer;

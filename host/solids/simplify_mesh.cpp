@@ -5,11 +5,10 @@
 #include <cmath>
 #include <memory_resource>
 #include <numeric>
-#include <optional>
 #include <utility>
 
-#include "core/sorted_order.h"
 #include "core/vectors.h"
+#include "geometry/cell_grid.h"
 #include "solids/error_quadric.h"
 #include "solids/vertex_rings.h"
 
@@ -44,9 +43,16 @@ class Simplifier {
     void run(ThreadPool& pool) {
         asked_.assign(around_.size(), 0);
         changed_.assign(around_.size(), 0);
-        const std::vector<std::vector<std::uint32_t>> within = inner_vertices(pool);
-        std::vector<Workspace> work(within.size() + 1);
-        pool.each(within.size(), 1, [&](std::size_t b) { merge_among(within[b], work[b]); });
+        if (around_.size() == 0) return;
+        const geometry::KeyGroups blocks = geometry::group_cells(
+            around_.size(), [&](std::size_t v) { return block_of(v); }, pool);
+        std::vector<Workspace> work(blocks.size() + 1);
+        pool.each(blocks.size(), 1, [&](std::size_t b) {
+            std::vector<std::uint32_t> inner;
+            for (const std::uint32_t v : blocks.group(b))
+                if (is_inner(v)) inner.push_back(v);
+            merge_among(std::move(inner), work[b]);
+        });
         changed_.assign(around_.size(), 0);
         std::vector<std::uint32_t> all(around_.size());
         std::iota(all.begin(), all.end(), 0U);
@@ -76,6 +82,7 @@ class Simplifier {
         mesh_.facet.resize(triangles);
     }
 
+  private:
     Vec3 area(const std::array<std::uint32_t, 3>& t) const {
         const Vec3& p = mesh_.vertex[t[0]];
         return cross(minus(mesh_.vertex[t[1]], p), minus(mesh_.vertex[t[2]], p));
@@ -172,28 +179,17 @@ class Simplifier {
         std::vector<std::pair<double, std::uint32_t>> nearest;
     };
 
-    // Of each block of voxels, in the order of the mesh: the vertices whose neighbours all are of
-    // the same block.
-    std::vector<std::vector<std::uint32_t>> inner_vertices(ThreadPool& pool) const {
-        constexpr unsigned block_bits = 5, key_bits = 21;
-        constexpr std::uint64_t chunk = 1 << 12;
-        std::vector<std::uint64_t> block(around_.size());
-        pool.each(block.size(), chunk, [&](std::size_t v) {
-            for (const std::int32_t c : mesh_.corner[v])
-                block[v] = block[v] << key_bits |
-                           (static_cast<std::uint32_t>(c >> block_bits) & ((1U << key_bits) - 1));
+    // The block of voxels that a vertex lies in.
+    geometry::GridCell block_of(std::size_t v) const {
+        constexpr int block_bits = 5;
+        const auto& [i, j, k] = mesh_.corner[v];
+        return {i >> block_bits, j >> block_bits, k >> block_bits};
+    }
+    // Whether all neighbours are of the same block.
+    bool is_inner(std::uint32_t v) const {
+        return std::ranges::all_of(around_[v], [&](std::uint32_t t) {
+            return block_of(after(mesh_.triangle[t], v)) == block_of(v);
         });
-        std::vector<std::vector<std::uint32_t>> out;
-        std::optional<std::uint64_t> last;
-        for (const std::uint32_t v : sorted_order(block, pool)) {
-            if (last != block[v]) out.emplace_back();
-            last = block[v];
-            const bool inner = std::ranges::all_of(around_[v], [&](std::uint32_t t) {
-                return block[after(mesh_.triangle[t], v)] == block[v];
-            });
-            if (inner) out.back().push_back(v);
-        }
-        return out;
     }
 
     void merge_among(std::vector<std::uint32_t> vertices, Workspace& work) {

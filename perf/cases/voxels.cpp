@@ -235,8 +235,6 @@ Prepared six_fill_sweep(device::Device& device) {
     const double voxels = 3.0 * static_cast<double>(cells.size());
     return {{voxels, "voxels", 5 * voxels, 2 * 5 * voxels},
             [on](device::Queue& queue) {
-                constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64},
-                                        low[3] = {1, 1, 8};
                 for (std::uint32_t a = 0; a < 3; ++a) {
                     const Axis& axis = on->axes[a];
                     queue.add<kernels::SixFillSweep>(std::uint64_t{64} * axis.runs,
@@ -246,11 +244,7 @@ Prepared six_fill_sweep(device::Device& device) {
                                                       .run_ends = axis.ends,
                                                       .cells = on->cells,
                                                       .entries = on->entries},
-                                                     {.run_count = axis.runs,
-                                                      .stride = stride[a],
-                                                      .stride_high = high[a],
-                                                      .stride_low = low[a],
-                                                      .direction = 2 * a});
+                                                     {.run_count = axis.runs, .direction = 2 * a});
                 }
             },
             {},

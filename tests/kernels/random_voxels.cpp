@@ -57,7 +57,6 @@ void six_fill_sweep(RandomBatch& to, Random& random, std::uint32_t size) {
     }
     Words cells = naturals(random, 512 * size, 40);
     for (auto& cell : cells) cell = cell < 6 ? cell : cell == 6 ? 65535u : 1u;
-    constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64}, low[3] = {1, 1, 8};
     const std::uint32_t axis = random.below(3), runs = static_cast<std::uint32_t>(first.size());
     to.queue.add<kernels::SixFillSweep>(std::uint64_t{64} * runs,
                                         {.run_first = to.in(first),
@@ -66,11 +65,7 @@ void six_fill_sweep(RandomBatch& to, Random& random, std::uint32_t size) {
                                          .run_ends = to.in(naturals(random, runs, 4)),
                                          .cells = to.in(cells),
                                          .entries = to.inout(naturals(random, 384 * size))},
-                                        {.run_count = runs,
-                                         .stride = stride[axis],
-                                         .stride_high = high[axis],
-                                         .stride_low = low[axis],
-                                         .direction = 2 * axis});
+                                        {.run_count = runs, .direction = 2 * axis});
 }
 
 void six_fill_vote(RandomBatch& to, Random& random, std::uint32_t leaves) {

@@ -96,8 +96,6 @@ class SixFillSweep : public EachBackend {
                 b_length(on, std::span(std::as_const(length)), "length"),
                 b_order(on, std::span(std::as_const(order)), "order"),
                 b_ends(on, std::span(std::as_const(ends)), "ends");
-            constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64},
-                                    low[3] = {1, 1, 8};
             run_kernel<kernels::SixFillSweep>(
                 on, first.size() * 64,
                 {.run_first = b_first,
@@ -107,9 +105,6 @@ class SixFillSweep : public EachBackend {
                  .cells = cells,
                  .entries = entries.slice()},
                 {.run_count = static_cast<std::uint32_t>(first.size()),
-                 .stride = stride[axis],
-                 .stride_high = high[axis],
-                 .stride_low = low[axis],
                  .direction = static_cast<std::uint32_t>(2 * axis)});
         }
         EXPECT_TRUE(entries.untouched());
