@@ -42,6 +42,22 @@ int make_session(const topple_options* options, uint64_t max_frame_bytes, int ke
     });
 }
 
+// update: of a Session; LiveScene, or null.
+template <class Update>
+int give_update(topple_session* session, topple_result** result, uint64_t* things,
+                topple_status* status, const Update& update) {
+    return guarded(status, [&] {
+        if (result) *result = nullptr;
+        if (things) *things = 0;
+        topple_session& of = needed(session, "session");
+        of.updated = update(*of.session);
+        if (!of.updated) return;
+        if (things) *things = of.updated->things.size();
+        if (result)
+            *result = new topple_result(ParseResult(*of.updated->result), of.options.allocator);
+    });
+}
+
 }  // namespace
 
 int topple_session_create(const topple_intrinsics* depth, const topple_intrinsics* colour,
@@ -108,14 +124,27 @@ int topple_session_forget(topple_session* session, uint64_t id, topple_status* s
 
 int topple_session_update(topple_session* session, topple_result** result, uint64_t* things,
                           topple_status* status) {
-    return guarded(status, [&] {
-        if (result) *result = nullptr;
-        topple_session& of = needed(session, "session");
-        of.updated = of.session->update();
-        if (things) *things = of.updated->things.size();
-        if (result)
-            *result = new topple_result(ParseResult(*of.updated->result), of.options.allocator);
+    return give_update(session, result, things, status, [](Session& of) { return of.update(); });
+}
+
+int topple_session_update_within(topple_session* session, uint64_t budget_ms,
+                                 topple_result** result, uint64_t* things, topple_status* status) {
+    constexpr std::uint64_t a_day = 86'400'000;
+    return give_update(session, result, things, status, [&](Session& of) {
+        return of.update(std::chrono::milliseconds(std::min(budget_ms, a_day)));
     });
+}
+
+int topple_session_settle(topple_session* session, topple_result** result, topple_status* status) {
+    return guarded(status, [&] {
+        needed(result, "result") = nullptr;
+        topple_session& of = needed(session, "session");
+        *result = new topple_result(ParseResult(*of.session->settle()), of.options.allocator);
+    });
+}
+
+int topple_session_cancel(topple_session* session, topple_status* status) {
+    return guarded(status, [&] { needed(session, "session").session->cancel(); });
 }
 
 int topple_session_thing(const topple_session* session, uint64_t index, topple_thing* thing,

@@ -26,13 +26,14 @@ namespace {
 constexpr const char* foreign =
     ", which topple did not write; move it away or choose another folder";
 
-constexpr std::array<std::string_view, 23> parse_files{
-    "parse.cache",      "solids.bin",          "points.ply",     "solid.ply",
-    "volume.vdb",       "report.html",         "objects.glb",    "map.bt",
-    "fields.vdb",       "field-human.png",     "field-wind.png", "view-photo.png",
-    "view-objects.png", "view-risk.png",       "view-walks.png", "view-human.png",
-    "view-wind.png",    "view-earthquake.png", "view-reach.png", "landscapes.json",
-    "things.json",      "verify.json",         "scene.json"};
+constexpr std::array<std::string_view, 25> parse_files{
+    "parse.cache",    "solids.bin",         "points.ply",       "solid.ply",
+    "volume.vdb",     "report.html",        "objects.glb",      "map.bt",
+    "fields.vdb",     "field-human.png",    "field-wind.png",   "view-photo.png",
+    "view-parts.png", "view-completed.png", "view-objects.png", "view-risk.png",
+    "view-walks.png", "view-human.png",     "view-wind.png",    "view-earthquake.png",
+    "view-reach.png", "landscapes.json",    "things.json",      "verify.json",
+    "scene.json"};
 
 bool is_numbered_image(std::string_view name) {
     return name.ends_with(".png") && name.find_first_not_of("0123456789") == name.size() - 4;

@@ -23,7 +23,8 @@ DepthFrame Coarse::of(const DepthFrame& frame) const {
     return out;
 }
 
-void Coarse::leave_out(const Gone& gone, DepthFrame& frame) const {
+bool Coarse::leave_out(const Gone& gone, DepthFrame& frame) const {
+    bool any = false;
     constexpr double alike_m = 0.05;
     constexpr int sure = 2;  // looks: of one, noise and poses may be too far off
     for (const GonePixel& pixel : gone) {
@@ -34,11 +35,15 @@ void Coarse::leave_out(const Gone& gone, DepthFrame& frame) const {
         for (std::uint32_t v = v0 - std::min(v0, step_); v <= last_v; ++v) {
             for (std::uint32_t u = u0 - std::min(u0, step_); u <= last_u; ++u) {
                 std::uint16_t& stored = frame.depth[std::size_t{v} * fine_.width + u];
-                if (std::abs(int{stored} - int{pixel.stored}) <= alike_m * fine_.depth_scale)
-                    stored = 0;
+                if (stored == 0 ||
+                    std::abs(int{stored} - int{pixel.stored}) > alike_m * fine_.depth_scale)
+                    continue;
+                stored = 0;
+                any = true;
             }
         }
     }
+    return any;
 }
 
 }  // namespace topple::live

@@ -16,7 +16,8 @@ class Coarse {
     const Intrinsics& intrinsics() const { return coarse_; }
     DepthFrame of(const DepthFrame& frame) const;  // without colours
     // Clears the readings around pixels of the coarse image that are of about the same depth.
-    void leave_out(const Gone& gone, DepthFrame& frame) const;
+    // Whether there were any.
+    bool leave_out(const Gone& gone, DepthFrame& frame) const;
 
   private:
     Intrinsics fine_, coarse_;

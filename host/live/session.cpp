@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <functional>
+#include <future>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -11,6 +14,7 @@
 
 #include "core/checksum.h"
 #include "core/random.h"
+#include "device/cancelling.h"
 #include "live/checkpoint.h"
 #include "live/coarse_frame.h"
 #include "live/seen_through.h"
@@ -25,6 +29,9 @@ namespace {
 
 // Things are told by this many frames at most, the same ones as long as these are not too many.
 constexpr std::size_t most_telling = 96;
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds no_budget{0}, most_budget{86'400'000};  // no clock runs over
 
 // One that has nothing to do with when it was taken: of a camera that swings to and fro, each
 // second frame looks the same way.
@@ -77,6 +84,9 @@ class Session::State {
             throw Error(ErrorKind::usage, "max_frame_bytes is 0: a session needs room for frames");
         if (!options_.parse.device) options_.parse.device = device::open_device("auto");
         options_.parse.coordinates = true;  // things are told by them
+        options_.parse.cancelled = [this, asked = std::move(options_.parse.cancelled)] {
+            return cancelling_ || (asked && asked());
+        };
         threads_ = options_.parse.device->threads().threads();
         for (const auto& [frame, kept] : frames_.kept) bytes_ += kept.frame->bytes();
         changes_ = frames_.kept.size();
@@ -138,45 +148,33 @@ class Session::State {
 
     std::shared_ptr<const LiveScene> update() {
         const std::lock_guard one_at_a_time(update_mutex_);
-        const auto [frames, changes] = snapshot();
-        if (frames.empty())
-            throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
-        auto found = std::make_shared<LiveScene>();
-        for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
-        const auto last = scene();
-        if (last && changes == parsed_changes_) {
-            *found = *last;
-            std::erase_if(found->things, [](const Thing& t) { return t.object < 0; });
-            for (Thing& thing : found->things) thing = {.id = thing.id, .object = thing.object};
-            const std::lock_guard lock(scene_mutex_);
-            scene_ = found;
-            return found;
-        }
-        live::Remembered remembered = this->remembered();
-        const Passed passed = passed_through(frames, remembered.poses);
-        FramesView view;
-        view.intrinsics = k_;
-        view.source = options_.source;
-        for (const auto& [frame, kept] : frames) view.camera_to_world.push_back(kept.pose);
-        DepthFrame current;
-        view.image = [&](std::size_t n) {
-            current = frames.at(found->frames[n]).frame->frame();
-            if (options_.forget_gone) coarse_.leave_out(passed.gone[n], current);
-            return view_of(current, k_);
-        };
-        found->result = std::make_shared<const ParseResult>(parse(view, options_.parse));
-        auto labeller = std::make_shared<const FrameLabeller>(*found->result);
-        found->things =
-            remembered.things.name(found->result->scene, shown(frames, passed, *labeller));
-        remembered.poses.clear();
-        for (const auto& [frame, kept] : frames) remembered.poses[frame] = kept.pose;
-        parsed_changes_ = changes;
-        const std::lock_guard lock(scene_mutex_);
-        scene_ = found;
-        labeller_ = std::move(labeller);
-        remembered_ = std::move(remembered);
-        return found;
+        wait_behind({});
+        find();
+        return told();
     }
+    std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget) {
+        const std::lock_guard one_at_a_time(update_mutex_);
+        begin_behind();
+        wait_behind(Clock::now() + std::clamp(budget, no_budget, most_budget));
+        auto out = told();  // before the next one is
+        begin_behind();
+        return out;
+    }
+    std::shared_ptr<const ParseResult> settle() {
+        const std::lock_guard one_at_a_time(update_mutex_);
+        wait_behind({});
+        find();
+        if (!of_all_) of_all_ = parsed(parsed_, nullptr);
+        return of_all_;
+    }
+    void cancel() {
+        cancelling_ = true;
+        const std::lock_guard one_at_a_time(update_mutex_);
+        if (behind_.valid()) behind_.wait();
+        behind_ = {};
+        cancelling_ = false;
+    }
+    ~State() { cancel(); }
     live::Checkpoint checkpoint() const {
         // First what is remembered: frames may be newer than an update, but never older.
         live::Checkpoint out{k_, colour_, {}, remembered()};
@@ -236,11 +234,84 @@ class Session::State {
     }
     std::pair<Frames, std::uint64_t> snapshot() const {
         const std::lock_guard lock(frames_mutex_);
+        if (frames_.kept.empty())
+            throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
         return {frames_.kept, changes_};
     }
     live::Remembered remembered() const {
         const std::lock_guard lock(scene_mutex_);
         return remembered_;
+    }
+    // Parses what is there, where that has not been done. One at a time.
+    void find() {
+        auto [frames, changes] = snapshot();
+        if (changes == parsed_changes_) return;
+        live::Remembered remembered = this->remembered();
+        const Passed passed = passed_through(frames, remembered.poses);
+        auto found = std::make_shared<LiveScene>();
+        for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
+        bool left_out = false;
+        found->result = parsed(frames, [&](std::size_t n, DepthFrame& frame) {
+            if (options_.forget_gone) left_out |= coarse_.leave_out(passed.gone[n], frame);
+        });
+        auto labeller = std::make_shared<const FrameLabeller>(*found->result);
+        found->things =
+            remembered.things.name(found->result->scene, shown(frames, passed, *labeller));
+        remembered.poses.clear();
+        for (const auto& [frame, kept] : frames) remembered.poses[frame] = kept.pose;
+        of_all_ = left_out ? nullptr : found->result;
+        parsed_ = std::move(frames);
+        parsed_changes_ = changes;
+        const std::lock_guard lock(scene_mutex_);
+        scene_ = std::move(found);
+        told_ = false;
+        labeller_ = std::move(labeller);
+        remembered_ = std::move(remembered);
+    }
+    std::shared_ptr<const ParseResult> parsed(
+        const Frames& frames, const std::function<void(std::size_t, DepthFrame&)>& leave_out) {
+        FramesView view;
+        view.intrinsics = k_;
+        view.source = options_.source;
+        std::vector<const live::KeptFrame*> images;
+        for (const auto& [frame, kept] : frames) {
+            view.camera_to_world.push_back(kept.pose);
+            images.push_back(kept.frame.get());
+        }
+        DepthFrame current;
+        view.image = [&](std::size_t n) {
+            current = images[n]->frame();
+            if (leave_out) leave_out(n, current);
+            return view_of(current, k_);
+        };
+        return std::make_shared<const ParseResult>(parse(view, options_.parse));
+    }
+    // The scene that is there; from the second time on without what changed.
+    std::shared_ptr<const LiveScene> told() {
+        const std::lock_guard lock(scene_mutex_);
+        if (scene_ && std::exchange(told_, true)) {
+            auto same = std::make_shared<LiveScene>(*scene_);
+            std::erase_if(same->things, [](const Thing& t) { return t.object < 0; });
+            for (Thing& thing : same->things) thing = {.id = thing.id, .object = thing.object};
+            scene_ = std::move(same);
+        }
+        return scene_;
+    }
+    void begin_behind() {
+        if (behind_.valid() || snapshot().second == parsed_changes_) return;
+        behind_ = std::async(std::launch::async, [this] { find(); });
+    }
+    // Until what goes on behind has ended, or that time comes.
+    void wait_behind(std::optional<Clock::time_point> until) {
+        constexpr std::chrono::milliseconds poll{20};
+        while (behind_.valid()) {
+            const auto now = Clock::now();
+            const Clock::duration left = until ? *until - now : Clock::duration(poll);
+            const auto wait = std::clamp<Clock::duration>(left, Clock::duration(0), poll);
+            if (behind_.wait_for(wait) == std::future_status::ready) return behind_.get();
+            if (until && left <= wait) return;
+            end_if_cancelled(options_.parse);
+        }
     }
     // The frames as they tell of things, and what others see through of each: later ones; and of
     // those after the ones of the last update, whose poses these are, earlier ones.
@@ -306,12 +377,18 @@ class Session::State {
     live::KeptFrames frames_;
     std::uint64_t bytes_ = 0, changes_ = 0;
 
+    // Of the updates, and of the parse that goes on behind, which only they begin and wait for.
     std::mutex update_mutex_;
-    std::uint64_t parsed_changes_ = 0;
+    std::future<void> behind_;
+    std::atomic<bool> cancelling_ = false;
+    std::atomic<std::uint64_t> parsed_changes_ = 0;
+    Frames parsed_;
+    std::shared_ptr<const ParseResult> of_all_;  // of these and nothing left out; null: not known
 
     mutable std::mutex scene_mutex_;
     live::Remembered remembered_;
     std::shared_ptr<const LiveScene> scene_;
+    bool told_ = false;
     std::shared_ptr<const FrameLabeller> labeller_;
 };
 
@@ -347,6 +424,15 @@ std::uint64_t Session::frame_bytes() const {
 }
 std::shared_ptr<const LiveScene> Session::update() {
     return state_->update();
+}
+std::shared_ptr<const LiveScene> Session::update(std::chrono::milliseconds budget) {
+    return state_->update(budget);
+}
+std::shared_ptr<const ParseResult> Session::settle() {
+    return state_->settle();
+}
+void Session::cancel() {
+    state_->cancel();
 }
 void Session::checkpoint(const std::filesystem::path& file) const {
     state_->checkpoint().write(file);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "graph/undersides.h"
+#include "objects/stops.h"
 #include "physics/inertia.h"
 
 namespace topple {
@@ -32,8 +33,8 @@ std::vector<Body> BodiesIf::operator()(std::vector<std::vector<std::int32_t>> pr
     const std::vector<physics::Symmetric> inertia =
         physics::inertia_of_objects(stage.masses.moments, stage.bodies, object_of, density);
     for (std::size_t o = 0; o < bodies.size(); ++o) bodies[o].inertia = inertia[o];
-    find_barriers(device, hulls, solids, stage.hidden_walls, object_of, friction, bodies,
-                  unseen_of(parts), false);
+    find_barriers(device, hulls, solids, stage.hidden_walls, Stops(stage), object_of, friction,
+                  bodies, unseen_of(parts), false);
     bodies.erase(bodies.begin());
     return bodies;
 }

@@ -36,6 +36,7 @@ Body BodyMaker::made(std::vector<std::int32_t> primitives,
         out.candidate.support_polygon = std::move(rest.support_polygon);
         out.candidate.support_height_m = rest.support_height_m;
         out.floor_m = stage_.floors.below_m(rest.support_height_m);
+        out.floor_shakes = stage_.floors.shaking(out.floor_m);
     }
     out.lowest_m = std::numeric_limits<double>::infinity();
     out.highest_m = -out.lowest_m;

@@ -14,6 +14,7 @@
 #include "objects/alternatives.h"
 #include "objects/body_maker.h"
 #include "objects/find_hidden_walls.h"
+#include "objects/stops.h"
 #include "physics/assess.h"
 #include "physics/body_landscape.h"
 #include "physics/directions.h"
@@ -208,9 +209,9 @@ Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId
 }
 
 void find_barriers(device::Device& device, const physics::PartHulls& parts,
-                   const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
-                   double friction, std::vector<Body>& objects, const Unseen& unseen,
-                   bool landscapes) {
+                   const SolidScene& solids, const physics::HiddenWalls& walls, const Stops& stops,
+                   ObjectOf object_of, double friction, std::vector<Body>& objects,
+                   const Unseen& unseen, bool landscapes) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
     const std::vector<ObjectBox> boxes = object_boxes(solids, object_of, objects.size());
@@ -251,11 +252,12 @@ void find_barriers(device::Device& device, const physics::PartHulls& parts,
                             .ways = safety::directions(),
                             .threads = &device.threads(),
                             .unseen = unseen});
-    const std::vector<bool> fixed = fixed_primitives(object_of, objects);
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
         objects[o].open_tipping = tipping[o];
-        if (auto beside = physics::beside_fixed(cells, columns, walls, candidates[o], fixed,
+        const physics::Candidate& c = candidates[o];
+        if (auto beside = physics::beside_fixed(cells, columns, walls, c,
+                                                stops.of(c.primitives, c.body.mass_kg),
                                                 objects[o].highest_m, tipping[o]))
             tipping[o] = std::move(*beside);
         physics::Instability& how = objects[o].instability;
@@ -350,8 +352,8 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         collect_objects(*solid.solids, made, options, device.threads(), hand, out);
         out.hidden_walls = find_hidden_walls(
             solid, out.object_of_primitive, fixed_primitives(out.object_of_primitive, out.objects));
-        find_barriers(device, hulls, *solid.solids, out.hidden_walls, out.object_of_primitive,
-                      options.friction, out.objects, unseen_of(solid));
+        find_barriers(device, hulls, *solid.solids, out.hidden_walls, Stops(out),
+                      out.object_of_primitive, options.friction, out.objects, unseen_of(solid));
         return made;
     });
     doubt_objects(parts.joints, hand.links(), seen, out);

@@ -51,6 +51,7 @@ struct Body {
     Overturning overturning;
     std::shared_ptr<const physics::Toppling> toppling;  // none: nothing holds it, or it is grounded
     double floor_m = 0;                                 // height of the floor under it
+    double floor_shakes = 1;  // so many times as strongly as the ground floor (FloorHeights)
     // How it stands (graph/rest.h); its candidate is held up in that way.
     graph::RestKind rest = graph::RestKind::seen;
     double rest_probability = 1;
@@ -115,16 +116,18 @@ struct PartStage {
 PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
                       StageClock& stage);
 
+class Stops;
+
 // Whether they are of the building, or of what is fixed to it.
 Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId, Body> objects);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
-// their edges, tipping, sliding, both together, boxes, and their landscapes if asked for. What is
-// grounded stops what falls, and so do walls behind what hides them.
+// their edges, tipping, sliding, both together, boxes, and their landscapes if asked for. `stops`
+// and walls behind what hides them stop what falls.
 void find_barriers(device::Device& device, const physics::PartHulls& parts,
-                   const SolidScene& solids, const physics::HiddenWalls& walls, ObjectOf object_of,
-                   double friction, std::vector<Body>& objects, const Unseen& unseen = {},
-                   bool landscapes = true);
+                   const SolidScene& solids, const physics::HiddenWalls& walls, const Stops& stops,
+                   ObjectOf object_of, double friction, std::vector<Body>& objects,
+                   const Unseen& unseen = {}, bool landscapes = true);
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

@@ -10,13 +10,13 @@
 
 namespace topple::physics {
 
-// The same body beside what does not give way: a wall of the building stops what would fall that
-// way (sweep_over_edge), and leaves it to lean there. Then the edge that it goes over first
+// The same body beside what does not give way: a wall of the building, say, stops what would fall
+// that way (sweep_over_edge), and leaves it to lean there. Then the edge that it goes over first
 // releases what it has come down until there, nothing where it leans before it is over the edge,
 // and what lies beyond that way is out of reach. Barriers stay as they are. Nothing where nothing
 // stops it.
 //   walls   of the building, where nobody saw them
-//   fixed   by primitive, whether it is the building's
+//   fixed   by primitive, whether it does not give way
 //   top_m   of the body, grid frame
 //   open    with exact passes, whose ways are known
 std::optional<Stability> beside_fixed(const SolidCells& cells, const CellColumns& columns,

@@ -20,6 +20,8 @@ struct State {
     bool ending = false;
 };
 
+thread_local unsigned busy_here = 0;
+
 // Never destroyed: threads may come here while the process ends.
 State* only = new State;
 
@@ -48,11 +50,17 @@ Busy::Busy() {
     const std::lock_guard lock(state().mutex);
     if (state().ending) throw Error(ErrorKind::cancelled, "cancelled");
     ++state().busy;
+    ++busy_here;
 }
 
 Busy::~Busy() {
+    --busy_here;
     const std::lock_guard lock(state().mutex);
     if (--state().busy == 0) state().idle.notify_all();
+}
+
+bool Busy::here() {
+    return busy_here > 0;
 }
 
 bool Busy::must_stop() {

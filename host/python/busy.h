@@ -16,6 +16,8 @@ class Busy {
     Busy(const Busy&) = delete;
     Busy& operator=(const Busy&) = delete;
 
+    // Whether this thread is: it may ask for the interpreter's lock.
+    static bool here();
     // Whether the interpreter is ending: for long work to poll.
     static bool must_stop();
     // Called at the interpreter's end, without its lock: stops and waits for all.

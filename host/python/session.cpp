@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "topple/session.h"
 
+#include <chrono>
+#include <optional>
+
 #include "arrays.h"
 #include "busy.h"
 #include "stopped.h"
@@ -43,12 +46,18 @@ class PySession {
             unlocked([&] { return session_.label(view.images[0], view.camera_to_world[0]); });
         return py::make_tuple(found.height, found.width, owned(std::move(found.thing)));
     }
-    py::object update() {
-        return described(*stoppable([&] { return session_.update(); }));
+    py::object update(std::optional<std::uint64_t> budget_ms) {
+        return described(stoppable([&] {
+            return budget_ms ? session_.update(std::chrono::milliseconds(*budget_ms))
+                             : session_.update();
+        }));
     }
-    py::object scene() const {
-        const auto found = session_.scene();
-        return found ? described(*found) : py::none();
+    std::shared_ptr<Parsed> settle() {
+        return parsed(*stoppable([&] { return session_.settle(); }));
+    }
+    py::object scene() const { return described(session_.scene()); }
+    void cancel() {
+        unlocked([&] { session_.cancel(); });
     }
     Session& session() { return session_; }
 
@@ -57,7 +66,10 @@ class PySession {
                                           ParseOptions options, bool forget_gone,
                                           std::uint64_t max_frame_bytes) {
         if (device) options.device = device->here();
-        options.cancelled = Stopped();
+        // What goes on behind is no thread of Python's, and gets no signals.
+        options.cancelled = [stopped = Stopped()] {
+            return Busy::here() ? stopped() : Busy::must_stop();
+        };
         return {std::move(options), forget_gone, max_frame_bytes};
     }
     FramesView seen(const PyFrame& frame, const py::array& pose) const {
@@ -66,14 +78,18 @@ class PySession {
         const Intrinsics& k = session_.intrinsics();
         return frames_view({frame}, size, pose, {k.fx, k.fy, k.cx, k.cy, k.depth_scale}, "frame");
     }
-    static py::object described(const LiveScene& found) {
-        auto parsed = std::make_shared<Parsed>();
-        parsed->result = *found.result;
+    static std::shared_ptr<Parsed> parsed(const ParseResult& result) {
+        auto out = std::make_shared<Parsed>();
+        out->result = result;
+        return out;
+    }
+    static py::object described(const std::shared_ptr<const LiveScene>& found) {
+        if (!found) return py::none();
         py::list things;
-        for (const Thing& thing : found.things)
+        for (const Thing& thing : found->things)
             things.append(
                 py::make_tuple(thing.id, thing.object, to_string(thing.change), thing.moved_m));
-        return py::make_tuple(parsed, things, found.frames);
+        return py::make_tuple(parsed(*found->result), things, found->frames);
     }
     Session session_;
 };
@@ -93,6 +109,8 @@ void bind_session(py::module_& module) {
         .def("frames", [](PySession& s) { return s.session().frames(); })
         .def("frame_bytes", [](PySession& s) { return s.session().frame_bytes(); })
         .def("update", &PySession::update)
+        .def("settle", &PySession::settle)
+        .def("cancel", &PySession::cancel)
         .def("scene", &PySession::scene)
         .def("label", &PySession::label);
 }

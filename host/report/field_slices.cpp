@@ -148,6 +148,13 @@ double lowest_m(const SpaceField& field) {
     return lowest * length(field.along_m[2]);
 }
 
+// Rather than that it is as strong all ways.
+bool flows(const SpaceField& field) {
+    return std::ranges::any_of(field.velocity_m_s, [](const std::array<float, 3>& v) {
+        return v != std::array<float, 3>{};
+    });
+}
+
 // What nearly all of a field stays below.
 double strongest_of(const SpaceField& field) {
     std::vector<float> all = field.frequency;
@@ -162,7 +169,7 @@ void write_field_slices(const std::filesystem::path& folder,
     const auto walked = fields.find("human");
     for (const auto& [name, field] : fields) {
         const safety::DisturbanceKind* kind = safety::find_disturbance_kind(name);
-        if (!kind || field.size() == 0) continue;
+        if (!kind || field.size() == 0 || !flows(field)) continue;
         double floor_m = lowest_m(field);
         if (walked != fields.end() && walked->second.size() > 0)
             floor_m = lowest_m(walked->second) + dot(minus(walked->second.corner_m, field.corner_m),

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "core/number_text.h"
@@ -58,6 +59,8 @@ class Pictures {
 
     void write() {
         if (view_.coloured) write_photo();
+        write_parts();
+        write_completed();
         write_objects();
         write_risk();
         write_walks();
@@ -90,8 +93,37 @@ class Pictures {
         save(page("photo", colours(false, 1), Overlay(image_), "Photo",
                   "The scan's own colours; what it does not show has those around it. "
                   "Labels: the riskiest objects and their unsafety.",
-                  true),
+                  [](const Record& voxel) -> std::optional<Rgb8> {
+                      const auto& [red, green, blue, known] = voxel.photo;
+                      if (known == 0) return std::nullopt;
+                      return Rgb8{red, green, blue};
+                  }),
              true);
+    }
+
+    void write_parts() {
+        std::vector<Rgb8> of_group;
+        for (const auto& [primitive, id] : view_.groups)
+            of_group.push_back(io::colour_of(primitive));
+        page("parts", of_group, Overlay(image_), "Parts",
+             "Each colour is one primitive: what geometry alone tells apart. Objects are joined "
+             "from these.")
+            .save();
+    }
+
+    void write_completed() {
+        constexpr Rgb8 completed{232, 120, 40};
+        Canvas canvas = page(
+            "completed", std::vector<Rgb8>(view_.groups.size(), Rgb8{150, 160, 172}),
+            Overlay(image_), "What was seen, and what was completed",
+            "The scan shows the surface alone; what is solid behind it, or hidden, is inferred.",
+            [&](const Record& voxel) -> std::optional<Rgb8> {
+                constexpr int inferred = 1 << 6;
+                if ((voxel.aux[3] & inferred) == 0) return std::nullopt;
+                return completed;
+            });
+        swatch(canvas, completed, "completed");
+        canvas.save();
     }
 
     void write_objects() {
@@ -223,10 +255,10 @@ class Pictures {
 
     Canvas page(const std::string& name, const std::vector<Rgb8>& colour_of_group,
                 const Overlay& overlay, const std::string& title, const std::string& says,
-                bool photo = false) {
+                const SceneImage::OwnColour& own = nullptr) {
         boxes_.clear();
         Canvas canvas(folder_ / ("view-" + name + ".png"), width, height);
-        canvas.image(0, 0, image_.shaded(colour_of_group, overlay, photo));
+        canvas.image(0, 0, image_.shaded(colour_of_group, overlay, own));
         headline(canvas, 34, title, {.size = 22, .bold = true});
         headline(canvas, 58, says, {.size = 14, .colour = {0.36, 0.4, 0.44}});
         return canvas;

@@ -191,7 +191,7 @@ bool SceneImage::is_rim(std::size_t at) const {
 }
 
 Raster SceneImage::shaded(const std::vector<Rgb8>& colour_of_group, const Overlay& overlay,
-                          bool photo) const {
+                          const OwnColour& own) const {
     constexpr Colour top{0.914, 0.929, 0.945}, bottom{0.973, 0.976, 0.98};
     const DepthImage& front = overlay.front_;
     Raster out(width_, height_, bottom);
@@ -212,11 +212,8 @@ Raster SceneImage::shaded(const std::vector<Rgb8>& colour_of_group, const Overla
                     const Face& face = faces_[what];
                     const double light =
                         double{face.light} * (0.45 + 0.55 * open) * (is_rim(at) ? 0.5 : 1.0);
-                    c = colour(colour_of_group[face.group]);
-                    if (photo && view_.voxels.photo[face.voxel][3] != 0) {
-                        const auto& own = view_.voxels.photo[face.voxel];
-                        c = colour({own[0], own[1], own[2]});
-                    }
+                    const auto mine = own ? own(view_.voxels.at(face.voxel)) : std::nullopt;
+                    c = colour(mine.value_or(colour_of_group[face.group]));
                     c = {c.red * light, c.green * light, c.blue * light};
                 } else if (what != DepthImage::nothing) {
                     c = colour(overlay.colours_[what - faces_.size()]);

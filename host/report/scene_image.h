@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -42,10 +44,11 @@ class SceneImage {
         std::vector<Rgb8> colours_;
     };
 
-    // The picture, its solids coloured by group: one colour for each of the view's groups. With
-    // `photo` they have those of the scan, as far as these are known.
+    // The picture, its solids coloured by group: one colour for each of the view's groups; but
+    // voxels have their `own` where that gives one.
+    using OwnColour = std::function<std::optional<Rgb8>(const Record& voxel)>;
     Raster shaded(const std::vector<Rgb8>& colour_of_group, const Overlay& overlay,
-                  bool photo = false) const;
+                  const OwnColour& own = nullptr) const;
 
   private:
     struct Face {

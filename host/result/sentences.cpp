@@ -58,8 +58,9 @@ struct Sentence {
     const Scene& scene;
     const SolidParts& parts;
     const ObjectStage& objects;
-    const physics::Swept& swept;
+    const Landing& landing;
     std::size_t o;
+    const physics::Swept& swept = landing.easiest;
     const Body& from = objects.objects[o];
     const Object& object = scene.objects[o];
     const Why& why = object.why;
@@ -158,8 +159,8 @@ struct Sentence {
             text = "Rolls or turns " + to() + "by itself";
         }
         if (!(object.release_J > 0)) {
-            text += stopped_for_good() ? ", but leans on " + stop() + " before it has come so far"
-                                       : ", but then rests no lower";
+            text += landing.for_good ? ", but leans on " + stop() + " before it has come so far"
+                                     : ", but then rests no lower";
             text += ": it releases nothing.";
             const std::string harder = harder_way();
             if (harder.empty()) return text;
@@ -177,18 +178,12 @@ struct Sentence {
         return "With " + energy(first->W_J) + " or more it may fall and release up to " +
                energy(object.instability.back().S_J) + ". The easiest way: ";
     }
-    // By the building, which does not give way.
-    bool stopped_for_good() const {
-        if (!swept.stopped || swept.by < 0) return false;
-        const std::int32_t by = scene.primitives[swept.by].object;
-        return scene.objects[by].grounded;
-    }
     std::string stop() const { return what(scene, parts, swept.by); }
     // Against anything else its release and risk are those of a fall with room.
     std::string leans() const {
         std::string text =
             "; comes to lean on " + stop() + ", with " + energy(object.fall.hits_J) + ".";
-        if (stopped_for_good()) return text;
+        if (landing.for_good) return text;
         return text + " If that gave way it would " +
                (why.drop_m > 0 ? "fall " + dropped() : "come to rest lower") + " and release " +
                energy(why.S_J) + ", which its risk reckons with.";
@@ -257,8 +252,8 @@ const safety::DisturbanceWords& worst_words(const Object& object) {
     return (worst != nullptr ? worst : safety::disturbance_kinds().front())->words;
 }
 std::string mend_of(const Object& object, const Fastening& to) {
-    if (!to.wall && to.floor) return "Bolt it to the floor, keep people away, or take it out";
     const safety::DisturbanceWords& words = worst_words(object);
+    if (!to.wall && to.floor) return words.free_mend;
     return to.wall || std::string_view(words.mend).find("the wall") == std::string_view::npos
                ? words.mend
                : "Fasten it to what carries it";
@@ -292,6 +287,7 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
     constexpr double one_strap_m = 1;  // what is wider turns about a single one; set by hand
     constexpr double high_m = 0.3;     // of where a fall begins; set by hand
     constexpr double shelf_m = 0.35;   // what is wider is put on no shelf; set by hand
+    constexpr double craft_N = 2000;   // what no bracket of a shop is rated for; set by hand
     const bool light = object.mass_kg < light_kg, bolted = !what.fasten.wall && what.fasten.floor;
     if (what.leg_of < 0 && is_carried(object) && object.fall.drop_m >= high_m)
         return std::string(worst_words(object).high_mend) + ": from here it falls " +
@@ -300,6 +296,9 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
         return "Move it to where nobody passes and it stands level, or take it out" +
                with_help(object) + ".";
     std::string text = mend_of(object, what.fasten);
+    if (what.hold.force_N > craft_N)
+        text =
+            "Ask someone who does such work: " + io::lower_case(text.substr(0, 1)) + text.substr(1);
     const bool large = *std::ranges::max_element(object.size_m) > shelf_m;
     if (light)
         text = what.leg_of >= 0 ? "Fasten it"
@@ -356,10 +355,10 @@ std::string advice_sentence(const Scene& scene, const Object& object, const Sugg
 
 void write_reasons(const SolidParts& parts, const ObjectStage& objects,
                    std::span<const Landing> landings, Scene& scene) {
-    const physics::Swept free{};
+    const Landing free{};
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-        const physics::Swept& swept = o < landings.size() ? landings[o].easiest : free;
-        scene.objects[o].why.sentence = Sentence{scene, parts, objects, swept, o}.text();
+        const Landing& landing = o < landings.size() ? landings[o] : free;
+        scene.objects[o].why.sentence = Sentence{scene, parts, objects, landing, o}.text();
     }
 }
 

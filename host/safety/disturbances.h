@@ -41,6 +41,7 @@ struct DisturbanceWords {
         const char *key, *follows, *name, *unit;
     } figure;
 
+    const char* free_mend = "Take it out, or bolt it to the floor";    // no wall is near: the same;
     const char* light_mend = "Put it elsewhere, or fasten it";         // for what is carried away,
     const char* large_mend = "Put it elsewhere, or fasten it";         // and fits on no shelf,
     const char* high_mend = "Put it lower, or farther from the edge";  // and falls from a height

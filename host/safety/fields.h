@@ -43,6 +43,7 @@ struct RiskObject {
     std::shared_ptr<const physics::Toppling> toppling;
     double barrier_error_J = 0;  // one standard error
     bool slides = false;         // rather than that it tips
+    double floor_shakes = 1;     // in earthquakes, so many times as strongly as the ground floor
     // Not as measured, but as at an end of that error (risk_error.h): the border of its support
     // lies so much further out, and the roots of its barriers are larger by so much.
     double border_shift_m = 0, root_shift = 0;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "objects/stops.h"
 #include "objects/taken_along.h"
 #include "physics/landscape.h"
 
@@ -145,7 +146,7 @@ std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& object
     for (const Body& from : objects.objects)
         ways.push_back(from.grounded ? Way{} : falling_way(from));
     const Table<ObjectId, Reach> reach = reaches(*parts.solids, objects, ways);
-    const std::vector<bool> fixed = fixed_primitives(objects.object_of_primitive, objects.objects);
+    const Stops stops(objects);
     std::vector<Landing> out(objects.objects.size());
     const std::vector<std::vector<std::int32_t>> taken = taken_along(objects);
     for (std::size_t o = 0; o < out.size(); ++o) {
@@ -161,9 +162,13 @@ std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& object
         out[o].swept = swept(parts, objects.hidden_walls, from, ways[o], along);
         out[o].drop_m = ways[o].drop_m;
         out[o].on_easiest = ways[o].easiest;
+        const physics::Candidate& body = from.candidate;
+        const std::vector<bool> stopping = stops.of(body.primitives, body.body.mass_kg);
         out[o].easiest = ways[o].easiest ? out[o].swept
                                          : swept(parts, objects.hidden_walls, from,
-                                                 easiest_way(from), along, fixed);
+                                                 easiest_way(from), along, stopping);
+        out[o].for_good =
+            out[o].easiest.stopped && out[o].easiest.by >= 0 && stopping[out[o].easiest.by];
         out[o].hits_J = hits_J(from, ways[o], out[o].swept);
         out[o].zone = zone(from, ways[o], out[o].swept, reach[o]);
     }

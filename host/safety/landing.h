@@ -17,10 +17,11 @@ namespace topple {
 struct Landing {
     physics::Swept swept;
     double drop_m = 0;  // beyond where its support ends
-    // Where no way takes less, the same; else where it comes to lean on the building on the easiest
-    // one, which releases nothing.
+    // Where no way takes less, the same; else where it comes to lean on what does not give way
+    // (objects/stops.h) on the easiest one, which releases nothing.
     physics::Swept easiest;
     bool on_easiest = true;
+    bool for_good = false;  // what stops it on the easiest way does not give way
     // What it has given up since the top of the barrier, with the lowest push over it.
     double hits_J = 0;
     safety::FallZone zone;

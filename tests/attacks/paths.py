@@ -15,7 +15,7 @@ import inputs  # noqa: E402
 
 CLOUD = dict(inputs.room_files())['xyz']
 OUTPUTS = ('parse.cache', 'solids.bin', 'points.ply', 'solid.ply', 'volume.vdb', 'report.html', 'objects.glb', 'map.bt', 'view-photo.png',
-           'view-objects.png', 'view-risk.png', 'view-walks.png', 'view-human.png', 'view-wind.png', 'view-earthquake.png', 'landscapes.json',
+           'view-parts.png', 'view-completed.png', 'view-objects.png', 'view-risk.png', 'view-walks.png', 'view-human.png', 'view-wind.png', 'view-earthquake.png', 'landscapes.json',
            'verify.json', 'scene.json')
 NAMES = ('a\nb', 'a\x1b[2Jb', 'a\x1b]0;owned\x07b', 'a\u202egnp.b', 'a\u2066b\u2069', 'a\u200fb', b'a\xff\xfeb', b'\x9b31m', 'a\x7fb', '-rf', '--help',
          '%s%n%x', '%2e%2e', 'a;b', '$(touch ran)', '`touch ran`', "a'b\"c", ' a ', 'a\\b', 'a\tb', '\ufeffa', 'e\u0301', '\u5bb6', 'a' * 240, '~', '*',

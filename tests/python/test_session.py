@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Sessions: frames come one by one, poses are corrected, things keep their ids."""
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -46,6 +49,41 @@ def test_an_update_is_a_parse_of_the_frames_that_are_there(device, depth_frames)
     assert np.array_equal(labels, ids[objects])
     live.forget(0)
     assert live.frames[0] == 1
+
+
+def test_an_update_keeps_its_budget_and_settles_as_a_parse(device, depth_frames):
+    height, width = depth_frames[0].shape
+    file = {'width': width, 'height': height, 'fx': CAMERA.fx, 'fy': CAMERA.fy, 'cx': CAMERA.cx, 'cy': CAMERA.cy, 'depth_scale': 1000}
+    live = topple.Session(intrinsics=file, device=device, disturbances=[])
+    with pytest.raises(topple.Error, match='the intrinsics say'):
+        live.add(depth_frames[0][:50], POSES[0])
+    for depth, pose in zip(depth_frames, POSES):
+        live.add(depth, pose)
+    assert live.update(0) is None
+    with pytest.raises(topple.Error, match='budget_ms'):
+        live.update('soon')
+    settled = live.settle()
+    parsed = topple.parse(frames=depth_frames, camera_to_world=np.array(POSES), intrinsics=file, device=device, disturbances=[])
+    assert np.array_equal(settled.point_object, parsed.point_object)
+    found = live.update(1000)
+    assert found.frames == live.frames and {t.change for t in found.things} == {'found'}
+    live.forget(0)
+    assert live.update(0).frames == found.frames
+    live.cancel()
+    assert live.scene.frames == found.frames
+
+
+def test_a_session_at_work_ends_with_the_interpreter(depth_frames):
+    code = f"""
+import numpy, topple
+live = topple.Session(topple.stages.Intrinsics{tuple(INTRINSICS)}, device='native')
+for n in range(6):
+    live.add(numpy.full((120, 160), 2000 + 10 * n, numpy.uint16), numpy.eye(4))
+live.update(0)
+print('ended')
+"""
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and done.stdout == 'ended\n', done.stderr
 
 
 def test_what_is_no_frame_is_refused(device, depth_frames):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -72,7 +73,7 @@ struct SessionOptions {
     std::string source = "session";  // Scene::source of its results
 };
 
-// One thread may add, correct and forget frames while another updates and any number read scenes.
+// One thread may add, correct and forget frames while others update and any number read scenes.
 // Errors are those of parse().
 class Session {
   public:
@@ -102,6 +103,19 @@ class Session {
     // time; where nothing has changed since, it is the one before, with no changes. Throws what
     // parse() does; the scene before stays then.
     std::shared_ptr<const LiveScene> update();
+    // The same within `budget`: a parse that takes longer goes on behind, on a thread of its own,
+    // which calls the options' functions (`cancelled` is polled by both), and a later update gives
+    // its scene. Until then it is the
+    // one before, without changes; null where there is none yet. LiveScene::frames says which
+    // frames it knows of. What a parse behind throws, the next update does.
+    std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget);
+    // update(), then the result of parse() of all frames and poses that are there, bit for bit,
+    // also where something has gone, which takes a parse of its own.
+    std::shared_ptr<const ParseResult> settle();
+    // From any thread: an update that is at work ends with Error(cancelled), and what goes on
+    // behind ends, too, as it does where the session ends. Waits for that. Frames, and the scene
+    // before, stay.
+    void cancel();
     // Writes the frames, their poses, and the things of the last update to a file: a session that
     // begins from it goes on as this one would. Throws Error(input) where it can't be written, or
     // is there and no checkpoint of topple.

@@ -469,6 +469,15 @@ int topple_session_forget(topple_session* session, uint64_t id, topple_status* s
  * released; `things` how many topple_session_thing() has then. */
 int topple_session_update(topple_session* session, topple_result** result, uint64_t* things,
                           topple_status* status);
+/* The same within budget_ms: a parse that takes longer goes on behind, and until a later update has
+ * its scene it is the one before; `result` is NULL and `things` 0 where there is none yet. */
+int topple_session_update_within(topple_session* session, uint64_t budget_ms,
+                                 topple_result** result, uint64_t* things, topple_status* status);
+/* An update, then the result of topple_parse_frames() of all that is there, also of what has gone.
+ */
+int topple_session_settle(topple_session* session, topple_result** result, topple_status* status);
+/* From any thread: ends the update that is at work, or goes on behind, as cancelled. */
+int topple_session_cancel(topple_session* session, topple_status* status);
 enum {
     TOPPLE_CHANGE_NONE = 0,
     TOPPLE_CHANGE_FOUND = 1,   /* not seen, or not told apart, before */

@@ -16,6 +16,7 @@
 #include "lab/evaluation/kind_score.h"
 #include "lab/evaluation/measures.h"
 #include "lab/evaluation/room.h"
+#include "lab/evaluation/segmentation_picture.h"
 #include "lab/evaluation/tables.h"
 #include "lab/rooms/kinds.h"
 #include "lab/scan/files.h"
@@ -105,6 +106,7 @@ void judge_parses(EvaluateArguments& a) {
         a, [&] { scores.push_back(evaluation::judge(evaluation::scan_and_parse(a.options))); });
     tell(a, "tables.txt", evaluation::tables(scores));
     keep(a, "scores.csv", evaluation::csv(scores));
+    keep(a, "segmentation.svg", evaluation::segmentation_picture(scores));
     print("\nAll figures: %s\n", a.out.c_str());
 }
 

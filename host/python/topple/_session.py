@@ -2,6 +2,8 @@
 """A scan that is still being made."""
 import operator
 import os
+import weakref
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +35,7 @@ class Session:
     """A scan that grows: depth frames come one by one, a SLAM system corrects their poses, and update() says what is there, and what came,
     moved and has gone since.
 
-    intrinsics: a topple.stages.Intrinsics of all frames. forget_gone: whether readings are left out at places that most of the latest looks
+    intrinsics: a topple.stages.Intrinsics of all frames, or a dict as intrinsics.json has it. forget_gone: whether readings are left out at places that most of the latest looks
     see through. max_frame_bytes: that kept frames take, compressed (640 x 480 pixels about 0.3 MB); where that is not enough those go whose
     camera has a neighbour in time next to it. The other options are those of parse(). One thread may add frames while another updates.
     Raises Error as parse() does."""
@@ -42,6 +44,8 @@ class Session:
     def __init__(self, intrinsics, *, device=None, voxel_m=0.0, up=None, disturbances=None, seed=1, density_kg_m3=700.0, friction=0.3,
                  tolerable_J=0.1, wind_m_s=12.0, forget_gone=True, max_frame_bytes=2_000_000_000):
         self._camera = camera(intrinsics, 'intrinsics')
+        sized = isinstance(intrinsics, Mapping) and {'width', 'height'} <= intrinsics.keys()
+        self._size = (intrinsics['width'], intrinsics['height']) if sized else None
         self._options = options(disturbances, {'voxel_m': voxel_m, 'up': up, 'seed': seed, 'density_kg_m3': density_kg_m3, 'friction': friction,
                                                'tolerable_J': tolerable_J, 'wind_m_s': wind_m_s})
         device = option('device', device)
@@ -57,7 +61,7 @@ class Session:
         if 'intrinsics' in options:
             raise TypeError('resume() takes no intrinsics: those of the checkpoint count')
         session = cls(Intrinsics(1, 1, 0, 0), **options)
-        session._session = _topple.Session(os.fspath(path), *session._how())
+        session._begin(os.fspath(path))
         return session
 
     def checkpoint(self, path):
@@ -72,8 +76,10 @@ class Session:
         frame = depth, None if colour is None else colour_image(colour, 'colour')
         pose = self._pose(camera_to_world)
         if self._session is None:
-            height, width = depth.shape
-            self._session = _topple.Session((width, height), self._camera, *self._how())
+            size = depth.shape[::-1]
+            if self._size not in (None, size):
+                raise usage('depth: {} x {} pixels, the intrinsics say {} x {}'.format(*size, *self._size))
+            self._begin(size, self._camera)
         return self._session.add(frame, pose)
 
     def correct(self, camera_to_world):
@@ -97,24 +103,40 @@ class Session:
         """That kept frames take."""
         return self._session.frame_bytes() if self._session else 0
 
-    def update(self):
+    def update(self, budget_ms=None):
         """Parses the frames that are there now: a LiveScene, whose result is that of parse() of the same frames and poses, but for what has
-        gone, whatever was added, corrected or forgotten before. Ctrl-C stops it, and the scene before stays."""
-        return self._described(self._begun().update())
+        gone, whatever was added, corrected or forgotten before. Ctrl-C stops it, and the scene before stays. budget_ms: how long to wait
+        for it; a parse that takes longer goes on behind, a later update has its scene, and until then it is the one before without
+        changes, or None."""
+        if budget_ms is not None:
+            try:
+                budget_ms = int(min(max(float(budget_ms), 0), 1e9))
+            except (TypeError, ValueError, OverflowError):
+                raise usage(f'budget_ms: expected milliseconds, not {budget_ms!r}') from None
+        return self._described(self._begun().update(budget_ms))
+
+    def settle(self):
+        """The Result of parse() of all frames and poses that are there, bit for bit, also of what has gone; an update() comes first."""
+        from . import Result
+        return Result(self._begun().settle(), None)
+
+    def cancel(self):
+        """From any thread: ends the update that is at work, or goes on behind, as cancelled. The scene before stays."""
+        self._begun().cancel()
 
     @property
     def scene(self):
         """The LiveScene of the last update; None before the first."""
-        found = self._session and self._session.scene()
-        return self._described(found) if found else None
+        return self._described(self._session.scene()) if self._session else None
 
     def label(self, depth, camera_to_world):
         """The id of the Thing that each pixel of a depth image shows, (H, W) int64; -1: nothing that is known."""
         height, width, ids = self._begun().label((depth_image(depth, 'depth'), None), self._pose(camera_to_world))
         return ids.reshape(height, width)
 
-    def _how(self):
-        return self._device, self._options, self._forget_gone, self._max_frame_bytes
+    def _begin(self, *of):
+        self._session = _topple.Session(*of, self._device, self._options, self._forget_gone, self._max_frame_bytes)
+        weakref.finalize(self, self._session.cancel)  # nothing goes on behind when the interpreter ends
 
     @staticmethod
     def _pose(camera_to_world, number=None):
@@ -143,5 +165,7 @@ class Session:
     @staticmethod
     def _described(found):
         from . import Result
+        if found is None:
+            return None
         parsed, things, frames = found
         return LiveScene(Result(parsed, None), [Thing(*thing) for thing in things], frames)

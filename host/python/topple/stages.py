@@ -18,6 +18,7 @@ Other threads of Python run meanwhile, and must not write to the arrays. What is
 names the argument, what it is and what it should be.
 """
 import enum
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -94,8 +95,10 @@ def _fields(kind, given, name):
 
 
 def camera(given, name):
-    """fx, fy, cx, cy and depth_scale as floats."""
+    """fx, fy, cx, cy and depth_scale as floats; given: Intrinsics, or a mapping as intrinsics.json has it."""
     try:
+        if isinstance(given, Mapping):
+            return [float(value) for value in Intrinsics(**{key: given[key] for key in Intrinsics._fields if key in given})]
         return [float(value) for value in Intrinsics(*given)]
     except (TypeError, ValueError):
         of_matrix = getattr(given, 'shape', None) == (3, 3) or isinstance(given, (list, tuple)) and list(map(np.size, given)) == [3, 3, 3]

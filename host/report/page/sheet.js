@@ -78,7 +78,7 @@ function fillSheet(scene) {
   const sheet = document.getElementById('sheet'), node = (name, text, className = '') => element(name, {text, className});
   const act = urgentOnes(scene, true), unsure = urgentOnes(scene, false), calm = calmOnes(scene).filter(isAdvised);
   const list = (title, lines, left) => lines.length ? [node('h2', title), element('ol', {className: 'todo'}, lines),
-    ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the pages that follow.`, 'hint')] : []] : [];
+    ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the table.`, 'hint')] : []] : [];
   const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene), tall = tallOnes(scene);
   const look = piece => piece && `first look whether it is ${piece}, which is to be fastened as a whole then. `;
   const stood = object => stoodText(object) && `${stoodText(object)} `;

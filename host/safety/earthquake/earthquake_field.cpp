@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 
@@ -16,6 +17,7 @@
 #include "safety/earthquake/made_up_records.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
+#include "safety/space_sums.h"
 
 namespace topple::safety {
 namespace {
@@ -180,23 +182,54 @@ void note_record(const Accelerogram& record, std::vector<std::string>& notes) {
                     to_digits(record.peak_m_s2(), 3) + " m/s^2.");
 }
 
-// Arrows at the contact surface: the objects' lowest cells.
-FieldSamples arrows_below(const SolidCells& solid, std::span<const std::size_t> which,
-                          std::span<const std::vector<std::uint32_t>> cells,
-                          std::span<const MassSpread> stances, std::span<const GroundEvent> events,
-                          std::span<const double> peaks) {
-    ArrowSample arrows;
-    for (const std::size_t o : which) {
-        const double bottom_m = stances[o].bottom_m;
-        for (const std::uint32_t c : cells[o]) {
-            if ((solid.k[c] + 0.5) * solid.voxel_m > bottom_m + solid.voxel_m) continue;
-            const std::size_t e = c % events.size();
-            arrows.offer(
-                {(solid.i[c] + 0.5) * solid.voxel_m, (solid.j[c] + 0.5) * solid.voxel_m, bottom_m},
-                {peaks[e] * events[e].dx, peaks[e] * events[e].dy, 0}, 1);
+// The contact surface: calls visit(o, c, place) for the lowest cells c of the objects o.
+struct Contacts {
+    const SolidCells& solid;
+    std::span<const std::size_t> which;
+    std::span<const std::vector<std::uint32_t>> cells;  // by object
+    std::span<const MassSpread> stances;
+
+    template <class Visit>
+    void each(const Visit& visit) const {
+        const double h = solid.voxel_m;
+        for (const std::size_t o : which) {
+            const double bottom_m = stances[o].bottom_m;
+            for (const std::uint32_t c : cells[o]) {
+                if ((solid.k[c] + 0.5) * h > bottom_m + h) continue;
+                visit(o, c, Vec3{(solid.i[c] + 0.5) * h, (solid.j[c] + 0.5) * h, bottom_m});
+            }
         }
     }
+};
+
+FieldSamples arrows_at(const Contacts& contacts, std::span<const RiskObject> objects,
+                       std::span<const GroundEvent> events, std::span<const double> peaks) {
+    ArrowSample arrows;
+    contacts.each([&](std::size_t o, std::uint32_t c, const Vec3& place) {
+        const std::size_t e = c % events.size();
+        const double peak = objects[o].floor_shakes * peaks[e];
+        arrows.offer(place, {peak * events[e].dx, peak * events[e].dy, 0}, 1);
+    });
     return arrows.take();
+}
+
+// energy_J_kg: on the ground floor.
+SpaceField over_contacts(const Contacts& contacts, std::span<const RiskObject> objects,
+                         double energy_J_kg) {
+    const double cell_m = std::max(0.05, contacts.solid.voxel_m);
+    std::map<std::array<std::int32_t, 3>, double> energies;
+    contacts.each([&](std::size_t o, std::uint32_t, const Vec3& place) {
+        std::array<std::int32_t, 3> cell{};
+        for (std::size_t a = 0; a < 3; ++a)
+            cell[a] = static_cast<std::int32_t>(std::floor(place[a] / cell_m));
+        double& energy = energies[cell];
+        energy = std::max(energy, objects[o].floor_shakes * objects[o].floor_shakes * energy_J_kg);
+    });
+    SpaceSums sums({}, cell_m);
+    for (const auto& [cell, energy] : energies) sums.add(cell, {1, {}, static_cast<float>(energy)});
+    SpaceField out = sums.take();
+    out.energy_unit = "J/kg";
+    return out;
 }
 
 }  // namespace
@@ -242,7 +275,7 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     const Motions motions = shake_objects(device, bodies, which, records, events, friction, true);
     for (const std::size_t o : which) {
         for (std::size_t e = 0; e < events.size(); ++e) {
-            const double force = objects[o].mass_kg * peaks[e];
+            const double force = objects[o].mass_kg * objects[o].floor_shakes * peaks[e];
             if (force > out.strongest[o].force_N)
                 out.strongest[o] = {force, bodies[o].body[0].height_m};
         }
@@ -267,7 +300,15 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     out.fragility =
         fragilities(device, standing, which, records, friction, options.floor_amplification,
                     options.hazard ? &*options.hazard : nullptr);
-    out.samples = arrows_below(*surroundings.cells, which, cells, stances, events, peaks);
+    const Contacts contacts{*surroundings.cells, which, cells, stances};
+    out.samples = arrows_at(contacts, objects, events, peaks);
+    if (options.over_space) {
+        double squares = 0;
+        for (const GroundEvent& event : events)
+            squares += std::pow(event.scale * peak_velocity_m_s(records[event.record]), 2);
+        out.space =
+            over_contacts(contacts, objects, squares / 2 / static_cast<double>(events.size()));
+    }
     return out;
 }
 

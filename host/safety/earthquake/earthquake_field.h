@@ -23,6 +23,7 @@ struct EarthquakeOptions {
     // What things stand on shakes so many times as strongly as the ground, whose peaks these are.
     double floor_amplification = 1;
     std::optional<HazardCurve> hazard;
+    bool over_space = false;  // Disturbance::space is wanted
 };
 
 // Ground motion (5.1.1): made-up records (made_up_records.h) of random direction and peak, or a
@@ -32,7 +33,9 @@ struct EarthquakeOptions {
 // kernel rocking). W is the larger of m g times the rise of its centre in its largest turn, and of
 // mu m g times its largest slip. So that risk counts what falls, W is at least the barrier if the
 // object overturns, or slides as far as the end of its support that way (slide_distance_m at
-// least), and else stays below it. What nothing holds falls in any.
+// least), and else stays below it. What nothing holds falls in any. Upper floors shake more
+// (RiskObject::floor_shakes). Over space: at the cells on which things stand, v^2 / 2 of the peak
+// velocity v there, joules per kilogram, which all ways of shaking share alike.
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options);

@@ -46,6 +46,7 @@ const DisturbanceKind& earthquake_kind() {
                 earthquake.record = scaled_record(options);
                 earthquake.floor_amplification = options.floor_amplification;
                 earthquake.hazard = options.hazard;
+                earthquake.over_space = options.space_fields;
                 return earthquake_field(device, surroundings, objects, options.friction,
                                         earthquake);
             },

@@ -88,13 +88,13 @@ std::array<double, 2> in_record(const GroundEvent& event, const std::array<doubl
 }
 
 // An event in one plane of a body.
-Shaking shaking_in(const std::array<double, 2>& way, std::uint32_t body, const GroundEvent& event,
-                   const LevelMoments& moments) {
-    const auto in = in_record(event, way);
-    const double share = moments.share(in);
+Shaking shaking_in(const ShakenObject& object, std::size_t plane, std::uint32_t body,
+                   const GroundEvent& event, const LevelMoments& moments) {
+    const auto in = in_record(event, object.way[plane]);
+    const double share = moments.share(in), scale = object.floor_shakes * event.scale;
     // Rounding alone shakes it across the only way that it is shaken.
-    const double scale = share > 1e-6 ? event.scale : 0;
-    return {body, event.record, scale * in[0], scale * in[1], event.scale, share};
+    const double level = share > 1e-6 ? scale : 0;
+    return {body, event.record, level * in[0], level * in[1], scale, share};
 }
 
 // Friction is too little to lift its edges, by far more than rounding, and its support ends
@@ -124,8 +124,8 @@ std::vector<std::vector<std::uint8_t>> falls_in(device::Device& device,
             for (std::size_t e = 0; e < events.size(); ++e) {
                 if (out[o][e] != 0) continue;
                 const Shaking shaking =
-                    shaking_in(objects[o].way[p], static_cast<std::uint32_t>(bodies.size()),
-                               events[e], moments[events[e].record]);
+                    shaking_in(objects[o], p, static_cast<std::uint32_t>(bodies.size()), events[e],
+                               moments[events[e].record]);
                 if (!can_fall(body, shaking, friction)) continue;
                 shakings.push_back(shaking);
                 fell.push_back(&out[o][e]);
@@ -155,6 +155,7 @@ ShakenObject shaken_object(const RiskObject& object, const MassSpread& stance,
     ShakenObject out;
     const auto [x, y] = weakest_way(object, stance);
     out.way = {{{x, y}, {-y, x}}};
+    out.floor_shakes = object.floor_shakes;
     out.held = object.mass_kg > 0;
     out.base_error_share = object.base_error_share;
     for (std::size_t p = 0; p < 2; ++p) {
@@ -185,7 +186,7 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
             bodies.push_back(body);
             const auto last = static_cast<std::uint32_t>(bodies.size() - 1);
             for (const GroundEvent& e : events)
-                shakings.push_back(shaking_in(objects[o].way[p], last, e, moments[e.record]));
+                shakings.push_back(shaking_in(objects[o], p, last, e, moments[e.record]));
         }
     }
     const std::vector<Motion> found = shake(device, bodies, records, shakings, friction);

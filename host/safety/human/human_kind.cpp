@@ -24,7 +24,8 @@ const DisturbanceKind& human_kind() {
                              .legend = "how often people\u2019s bodies pass there",
                              .scale = 100,
                              .unit = "times in 100 walks"},
-                  .figure = {"walks", "", "walks", ""}},
+                  .figure = {"walks", "", "walks", ""},
+                  .free_mend = "Keep the way past it clear, take it out, or bolt it to the floor"},
         .field =
             [](device::Device& device, const Surroundings& surroundings,
                std::span<const RiskObject> objects, const ParseOptions& options) {

@@ -66,6 +66,21 @@ TEST_F(CApi, ASessionIsThatOfCpp) {
         EXPECT_EQ(thing.object, expected->things[n].object);
         EXPECT_EQ(thing.change, TOPPLE_CHANGE_FOUND);
     }
+    topple_result* within = nullptr;
+    std::uint64_t again = 0;
+    ASSERT_EQ(topple_session_update_within(session, UINT64_MAX, &within, &again, &status),
+              TOPPLE_OK);
+    EXPECT_EQ(again, things);
+    topple_result* settled = nullptr;
+    ASSERT_EQ(topple_session_cancel(session, &status), TOPPLE_OK);
+    ASSERT_EQ(topple_session_settle(session, &settled, &status), TOPPLE_OK) << status.message;
+    for (const topple_result* same_result : {within, settled})
+        EXPECT_TRUE(std::ranges::equal(expected->result->scene.points.object,
+                                       std::span(topple_result_point_objects(same_result),
+                                                 expected->result->scene.points.x.size())));
+    topple_result_release(within);
+    topple_result_release(settled);
+    EXPECT_EQ(topple_session_settle(session, nullptr, &status), TOPPLE_ERROR_USAGE);
     frames.camera_to_world = right.data();
     std::vector<std::int64_t> labels(std::size_t{96} * 72);
     ASSERT_EQ(topple_session_label(session, &frames, 1, labels.data(), &status), TOPPLE_OK);
@@ -84,7 +99,8 @@ TEST_F(CApi, ASessionIsThatOfCpp) {
     EXPECT_EQ(session, nullptr);
     ASSERT_EQ(topple_session_resume(file.c_str(), &options, 0, 1, &session, &status), TOPPLE_OK)
         << status.message;
-    std::uint64_t again = 0;
+    ASSERT_EQ(topple_session_update_within(session, 0, nullptr, &again, &status), TOPPLE_OK);
+    EXPECT_EQ(again, 0u);
     ASSERT_EQ(topple_session_update(session, nullptr, &again, &status), TOPPLE_OK);
     ASSERT_EQ(again, things);
     for (std::uint64_t n = 0; n < things; ++n) {

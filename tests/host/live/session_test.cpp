@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -79,6 +80,64 @@ TEST_F(Sessions, AnUpdateIsAParseOfTheFramesThatAreThere) {
         same.camera_to_world[n] = poses[found->frames[n]] = rounded(pose(n));
     session.correct(poses);
     expect_same(session.update()->result->scene, parse(same, options.parse).scene);
+}
+
+TEST_F(Sessions, AnUpdateKeepsItsBudgetAndTheParseGoesOnBehind) {
+    using namespace std::chrono_literals;
+    const SessionOptions options = quick();
+    Session session(walk_->intrinsics, {}, options);
+    expect_input_error([&] { session.update(0ms); }, {"no frames yet"});
+    for (std::size_t n = 0; n < 6; ++n) session.add(frame(n), pose(n));
+    EXPECT_EQ(session.update(0ms), nullptr);
+    const auto found = session.update(std::chrono::milliseconds::max());
+    ASSERT_NE(found, nullptr);
+    expect_same(found->result->scene, parse(frames_view_of(*walk_), options.parse).scene);
+    EXPECT_EQ(found->things.back().change, Change::found);
+    session.forget(0);
+    const auto before = session.update(-1ms);
+    EXPECT_EQ(before->result, found->result);
+    EXPECT_EQ(before->things.back().change, Change::none);
+    FramesView same = frames_view_of(*walk_);
+    same.images.erase(same.images.begin());
+    same.camera_to_world.erase(same.camera_to_world.begin());
+    const auto settled = session.settle();
+    expect_same(settled->scene, parse(same, options.parse).scene);
+    EXPECT_EQ(session.scene()->frames, (std::vector<FrameId>{1, 2, 3, 4, 5}));
+    EXPECT_EQ(session.scene()->result, settled);
+}
+
+TEST_F(Sessions, CancellingEndsAnUpdateAndWhatGoesOnBehind) {
+    using namespace std::chrono_literals;
+    Session session(walk_->intrinsics, {}, quick());
+    for (std::size_t n = 0; n < 6; ++n) session.add(frame(n), pose(n));
+    EXPECT_EQ(session.update(0ms), nullptr);
+    session.cancel();
+    EXPECT_EQ(session.scene(), nullptr);
+    EXPECT_EQ(session.update()->frames.size(), 6u);
+    session.forget(0);
+    session.update(0ms);  // left at work: the session's end ends it
+}
+
+// Three frames show a thing that three later ones see through.
+TEST_F(Sessions, SettlingCountsWhatHasGoneAsAParseDoes) {
+    std::vector<std::uint16_t> with = walk_->frames[0].depth;
+    for (std::size_t v = 20; v < 50; ++v)
+        for (std::size_t u = 30; u < 60; ++u)
+            with[96 * v + u] = static_cast<std::uint16_t>(with[96 * v + u] * 6 / 10);
+    const SessionOptions options = quick();
+    Session session(walk_->intrinsics, {}, options);
+    FramesView all = frames_view_of(*walk_);
+    for (std::size_t n = 0; n < 6; ++n) {
+        all.images[n] = frame(0);
+        if (n < 3) all.images[n].depth = {with.data(), 96, 72};
+        all.camera_to_world[n] = shifted(pose(0), 0.001 * static_cast<double>(n));
+        session.add(all.images[n], all.camera_to_world[n]);
+    }
+    const Scene expected = parse(all, options.parse).scene;
+    const auto settled = session.settle();
+    expect_same(settled->scene, expected);
+    EXPECT_NE(session.update()->result->scene.points.x, expected.points.x);
+    EXPECT_EQ(session.settle(), settled);
 }
 
 TEST_F(Sessions, ThingsKeepTheirIdsWhereverTheirFramesGo) {

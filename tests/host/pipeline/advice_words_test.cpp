@@ -60,7 +60,7 @@ const Vec3 chair_m{0.45, 0.5, 0.88}, stool_m{0.35, 0.35, 0.5}, shelf_m{0.3, 0.8,
     table_m{0.8, 1.4, 0.74}, screen_m{0.2, 0.6, 0.42}, lamp_m{0.35, 0.35, 1.6},
     fridge_m{0.6, 0.65, 1.75}, pot_m{0.3, 0.3, 0.35}, sofa_m{0.9, 1.9, 0.85},
     crate_m{0.3, 0.4, 0.3};
-constexpr const char *bolt = "Bolt it", *strap = "strap", *wall = "wall", *move = "Move it",
+constexpr const char *bolt = "bolt it", *strap = "strap", *wall = "wall", *move = "Move it",
                      *lower = "Put it lower", *nothing = "No need to act";
 
 const std::vector<Situation> situations{
@@ -308,7 +308,7 @@ const std::vector<Situation> situations{
      Kind::fix,
      free_standing,
      0,
-     {bolt, "keep people away"},
+     {bolt, "Keep the way past it clear, take it out"},
      {wall, lower}},
     {"a statue amid a hall",
      "statue",

@@ -5,6 +5,7 @@
 #include "graph/stable_objects.h"
 #include "host/safety/room.h"
 #include "objects/object_stage.h"
+#include "objects/stops.h"
 #include "physics/part_hulls.h"
 #include "safety/safety_stage.h"
 
@@ -54,11 +55,13 @@ struct AssessedRoom {
             object.inertia = inertia[o];
             objects.push_back(std::move(object));
         }
-        find_barriers(device, hulls, solids, {}, room.object_of_primitive, friction, objects);
+        stage.objects = objects;
+        stage.object_of_primitive = room.object_of_primitive;
+        find_barriers(device, hulls, solids, {}, Stops(stage), room.object_of_primitive, friction,
+                      objects);
         at_risk = risk_objects(objects);
         parts.solids = {&solids, [](const SolidScene*) {}};
         stage.objects = objects;
-        stage.object_of_primitive = room.object_of_primitive;
     }
     AssessedRoom(const AssessedRoom&) = delete;
 };

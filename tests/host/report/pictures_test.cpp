@@ -121,8 +121,9 @@ class PicturesOfAScene : public test::Files {
 TEST_F(PicturesOfAScene, are_drawn_the_same_each_time) {
     const Scene scene = test::SyntheticScene(0.06).make();
     const fs::path a = drawn("a", scene), b = drawn("b", scene);
-    const std::set<std::string> all{"view-earthquake.png", "view-human.png", "view-objects.png",
-                                    "view-risk.png",       "view-walks.png", "view-wind.png"};
+    const std::set<std::string> all{"view-completed.png", "view-earthquake.png", "view-human.png",
+                                    "view-objects.png",   "view-parts.png",      "view-risk.png",
+                                    "view-walks.png",     "view-wind.png"};
     EXPECT_EQ(names(a), all);
     const Pixels objects = pixels(a / "view-objects.png");
     for (const std::string& name : all) {
@@ -148,9 +149,11 @@ TEST_F(PicturesOfAScene, are_only_drawn_of_what_there_is) {
     scene.fields.erase("wind");
     scene.fields["human"] = {};
     EXPECT_EQ(names(drawn("some", scene)),
-              (std::set<std::string>{"view-earthquake.png", "view-objects.png", "view-risk.png"}));
+              (std::set<std::string>{"view-completed.png", "view-earthquake.png",
+                                     "view-objects.png", "view-parts.png", "view-risk.png"}));
     EXPECT_EQ(names(drawn("none", Scene{})),
-              (std::set<std::string>{"view-objects.png", "view-risk.png"}));
+              (std::set<std::string>{"view-completed.png", "view-objects.png", "view-parts.png",
+                                     "view-risk.png"}));
 }
 
 TEST_F(PicturesOfAScene, show_the_scans_own_colours) {
@@ -163,7 +166,8 @@ TEST_F(PicturesOfAScene, show_the_scans_own_colours) {
     p.blue.assign(p.x.size(), 40);
     const fs::path all = drawn("photo", scene);
     EXPECT_EQ(names(all),
-              (std::set<std::string>{"view-objects.png", "view-photo.png", "view-risk.png"}));
+              (std::set<std::string>{"view-completed.png", "view-objects.png", "view-parts.png",
+                                     "view-photo.png", "view-risk.png"}));
     const Pixels picture = pixels(all / "view-photo.png");
     std::size_t green = 0;
     for (std::size_t at = 0; at + 2 < picture.rgb.size(); at += 3)

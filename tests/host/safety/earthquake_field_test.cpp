@@ -2,6 +2,7 @@
 #include "safety/earthquake/earthquake_field.h"
 
 #include "device/devices.h"
+#include "objects/floor_heights.h"
 #include "physics/landscape.h"
 #include "room.h"
 #include "safety/columns.h"
@@ -178,6 +179,50 @@ TEST_F(EarthquakeField, SupportPolygonGivesTheBaseEachWay) {
                 1e-12);
     stands.center = {-0.1, 0.1, 0};  // hangs over
     EXPECT_EQ(half_base(object, stands, -1, 0), 0);
+}
+
+// One of two things stands on a floor that shakes twice as strongly as the other's.
+TEST_F(EarthquakeField, UpperFloorsShakeMore) {
+    test::Room room(0.02, {0, 0}, {3, 3});
+    const auto low = static_cast<std::size_t>(room.thing(1, 1, 0, 0.08, 0.4));
+    const auto high = static_cast<std::size_t>(room.thing(2, 2, 0, 0.08, 0.4));
+    room.objects[high].floor_shakes = 2;
+    const auto surroundings = room.surroundings();
+    EarthquakeOptions options;
+    options.record = square_pulse(8, 0.25);
+    options.over_space = true;
+    const Disturbance field = earthquake_field(*device, surroundings, room.objects, mu, options);
+    EXPECT_NEAR(field.strongest[high].force_N, 2 * field.strongest[low].force_N, 1e-9);
+    EXPECT_NEAR(field.fragility[high].pga_g, field.fragility[low].pga_g / 2,
+                0.05 * field.fragility[low].pga_g);
+    ASSERT_TRUE(field.space);
+    const SpaceField& space = *field.space;
+    const double speed = peak_velocity_m_s(*options.record);
+    std::size_t strong = 0;
+    for (std::size_t n = 0; n < space.size(); ++n) {
+        const bool upper = space.cell[n][0] * space.along_m[0][0] > 1.5;
+        strong += upper;
+        EXPECT_NEAR(space.energy[n], (upper ? 4 : 1) * speed * speed / 2, 1e-4 * speed * speed);
+        EXPECT_EQ(space.frequency[n], 1);
+    }
+    EXPECT_TRUE(strong > 0 && strong < space.size());
+    EXPECT_EQ(space.energy_unit, "J/kg");
+}
+
+TEST(FloorHeights, UpperStoreysShakeMoreUpToTheRoof) {
+    test::Room room(0.02, {0, 0}, {3, 3});
+    room.floor(0, 1, 0, 1, 1);       // a platform
+    room.floor(0, 3, 0, 3, 3);       // a storey
+    room.box(0, 0.1, 0, 0.1, 3, 6);  // up to the roof
+    const auto surroundings = room.surroundings();
+    std::vector<Role> roles;
+    for (const bool floor : surroundings.is_floor_primitive)
+        roles.push_back(floor ? Role::floor : Role::none);
+    const FloorHeights floors(SolidScene(*surroundings.cells, roles));
+    EXPECT_EQ(floors.shaking(0), 1);
+    EXPECT_EQ(floors.shaking(1), 1);
+    EXPECT_NEAR(floors.shaking(3), 2, 1e-9);
+    EXPECT_EQ(FloorHeights().shaking(3), 1);
 }
 
 // A box on a table, nearer to one end.
