@@ -77,8 +77,8 @@ Answer what_falls(const Scene& scene, const std::vector<std::int32_t>& taken) {
                                             (without.falls.size() == 1 ? " falls:\n" : " fall:\n"));
     for (const Unheld& one : without.falls) out.text += "  " + one.reason + ".\n";
     if (!without.unsure.empty())
-        out.text += "The scan does not show what holds " + objects_text(scene, without.unsure) +
-                    ", beside " + (without.falls.empty() ? "it" : "these") + ": look first.\n";
+        out.text += "The scan does not show for sure what holds " +
+                    objects_text(scene, without.unsure) + ": look first.\n";
     out.json = {{"schema", "topple.ask/1"},
                 {"question", "without"},
                 {"objects", taken},

@@ -87,7 +87,8 @@ class Holding {
           footholds_(scene),
           supports_(scene.objects.size()),
           carries_(scene.objects.size()),
-          there_(scene.objects.size(), true) {
+          there_(scene.objects.size(), true),
+          lost_(scene.objects.size(), 0.0) {
         for (std::size_t n = 0; n < scene.supports.size(); ++n) {
             supports_[scene.supports[n].supported].push_back(n);
             carries_[scene.supports[n].supporter].push_back(scene.supports[n].supported);
@@ -95,8 +96,10 @@ class Holding {
         find_roots();
     }
 
-    void take(std::int32_t object) {
+    // probability: that it goes.
+    void take(std::int32_t object, double probability = 1) {
         there_[object] = false;
+        lost_[object] = probability;
         shaken_.insert(shaken_.end(), carries_[object].begin(), carries_[object].end());
     }
     bool there(std::int32_t object) const { return there_[object]; }
@@ -107,13 +110,18 @@ class Holding {
         sort_unique(shaken_);
         for (const std::int32_t id : std::exchange(shaken_, {})) {
             const Object& o = scene_.objects[id];
-            if (there_[id] && !o.grounded && !is_held(o)) out.push_back(unheld(o));
+            if (there_[id] && !o.grounded && !is_held(o))
+                out.push_back(unheld(o, probability(supports_of(o))));
         }
         if (!out.empty()) return out;
-        // Nothing tips, but rings may hold themselves alone.
+        // Nothing tips, but rings may hold themselves alone: as likely as any of them lost another.
         const std::vector<bool> reached = reached_from_roots();
+        double likeliest = 0;
         for (const Object& o : scene_.objects)
-            if (there_[o.id] && !reached[o.id]) out.push_back(unheld(o));
+            if (there_[o.id] && !reached[o.id])
+                likeliest = std::max(likeliest, probability(supports_of(o)));
+        for (const Object& o : scene_.objects)
+            if (there_[o.id] && !reached[o.id]) out.push_back(unheld(o, likeliest));
         return out;
     }
 
@@ -147,15 +155,21 @@ class Holding {
         return by.lost.empty() || (!by.left.empty() && beyond_m(o, by) < 0);
     }
 
-    Unheld unheld(const Object& o) const {
+    // That what stood on these has lost one.
+    double probability(const Supports& by) const {
+        double out = 0;
+        for (const std::size_t n : by.lost)
+            out =
+                std::max(out, scene_.supports[n].probability * lost_[scene_.supports[n].supporter]);
+        return out;
+    }
+    Unheld unheld(const Object& o, double likely) const {
         const Supports by = supports_of(o);
         Unheld out;
         out.object = o.id;
+        out.probability = likely;
         for (const std::size_t n : by.left) out.left.push_back(scene_.supports[n].supporter);
-        for (const std::size_t n : by.lost) {
-            out.lost.push_back(scene_.supports[n].supporter);
-            out.probability = std::max(out.probability, scene_.supports[n].probability);
-        }
+        for (const std::size_t n : by.lost) out.lost.push_back(scene_.supports[n].supporter);
         sort_unique(out.left);
         sort_unique(out.lost);
         const double beyond = beyond_m(o, by);
@@ -172,10 +186,9 @@ class Holding {
                          named(scene_, out.left);
         }
         out.reason[0] = 'O';
-        constexpr double sure = 0.9;  // below it is told how likely the support is
-        if (!by.lost.empty() && out.probability < sure)
-            out.reason +=
-                " (a support that is " + io::two_digits(100 * out.probability) + " % likely)";
+        constexpr double sure = 0.9;  // below it is told how likely that is
+        if (out.probability < sure)
+            out.reason += " (" + io::two_digits(100 * out.probability) + " % likely)";
         return out;
     }
 
@@ -220,7 +233,8 @@ class Holding {
     std::vector<std::vector<std::size_t>> supports_;  // by supported, into Scene::supports
     std::vector<Ids> carries_;                        // by supporter
     std::vector<bool> there_;
-    Ids shaken_;  // what has lost a supporter since next() looked
+    std::vector<double> lost_;  // how likely it is that an object has gone
+    Ids shaken_;                // what has lost a supporter since next() looked
     Ids roots_;
 };
 
@@ -241,20 +255,35 @@ Ids unsure_beside(const Scene& scene, const Holding& holding) {
     return out;
 }
 
+// All that may fall.
+std::vector<Unheld> take_away(const Ids& taken, Holding& holding) {
+    for (const std::int32_t id : taken) holding.take(id);
+    std::vector<Unheld> out;
+    for (auto next = holding.next(); !next.empty(); next = holding.next()) {
+        for (Unheld& one : next) {
+            holding.take(one.object, one.probability);
+            out.push_back(std::move(one));
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
 FallsWithout falls_without(const Scene& scene, const std::vector<std::int32_t>& taken) {
+    constexpr double likelier_than_not = 0.5;
     for (const std::int32_t id : taken) check_loose(scene, id);
     Holding holding(scene);
-    for (const std::int32_t id : taken) holding.take(id);
     FallsWithout out;
-    for (auto next = holding.next(); !next.empty(); next = holding.next()) {
-        for (Unheld& one : next) {
-            holding.take(one.object);
-            out.falls.push_back(std::move(one));
-        }
-    }
+    std::vector<Unheld> all = take_away(taken, holding);
     out.unsure = unsure_beside(scene, holding);
+    for (Unheld& one : all) {
+        if (one.probability < likelier_than_not)
+            out.unsure.push_back(one.object);
+        else
+            out.falls.push_back(std::move(one));
+    }
+    sort_unique(out.unsure);
     return out;
 }
 
@@ -266,8 +295,10 @@ std::vector<std::vector<std::int32_t>> removal_steps(const Scene& scene) {
 }
 
 std::vector<std::vector<std::int32_t>> removal_steps(const Scene& scene, std::int32_t before) {
+    check_loose(scene, before);
+    Holding holding(scene);
     Ids going{before};
-    for (const Unheld& one : falls_without(scene, {before}).falls) going.push_back(one.object);
+    for (const Unheld& one : take_away({before}, holding)) going.push_back(one.object);
     std::ranges::sort(going);
     return rings_from_the_top(scene, going);
 }

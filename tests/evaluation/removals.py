@@ -6,7 +6,8 @@ export, and what then falls within 2 s is compared with what was said.
 usage: removals.py TOPPLE WORK [--rooms N] [--first SEED]     (a Python with MuJoCo 3.2 or later: build/venv/bin/python3)
 
 An object falls where its centre comes down by more than 3 cm or it turns by more than 10 degrees, and it does not without
-anything being taken away. What stands on pads or is held in the export is left out: it has no footing of its own there.
+anything being taken away. What stands on pads or is held in the export is left out: it has no footing of its own there, and
+where it is said to fall it is taken out, too, since it would hang there and hold others.
 """
 import argparse
 import json
@@ -21,10 +22,10 @@ SECONDS, DROP_M, TURN_COS = 2.0, 0.03, math.cos(math.radians(10) / 2)
 
 
 def fallen(folder, without):
-    """The objects that fall within SECONDS once one is taken out of the scene, or none (-1)."""
+    """The objects that fall within SECONDS once these are taken out of the scene."""
     spec = mujoco.MjSpec.from_file(os.path.join(folder, 'scene.xml'))
-    if without >= 0:
-        spec.delete(spec.body(f'object_{without}'))
+    for one in without:
+        spec.delete(spec.body(f'object_{one}'))
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -48,14 +49,14 @@ def judge(topple, work, kind, seed):
         propped = {b['object'] for b in json.load(file)['bodies'] if b['on_pad'] or b['held']}
     loose = {o['id'] for o in scene['objects'] if not o['grounded']}
     carriers = sorted({s['supporter'] for s in scene['supports'] if s['supporter'] in loose and s['supported'] in loose})
-    restless = fallen(sim, -1)
+    restless = fallen(sim, ())
     both = said_alone = came_alone = 0
     for carrier in carriers:
         if carrier in propped | restless:
             continue
         answer = json.loads(subprocess.run([topple, 'ask', out, '--without', str(carrier), '--json'], check=True, capture_output=True, text=True).stdout)
-        counted = loose - propped - restless - set(answer['unsure']) - {carrier}
-        said, came = {f['object'] for f in answer['falls']} & counted, fallen(sim, carrier) & counted
+        counted, falls = loose - propped - restless - set(answer['unsure']) - {carrier}, {f['object'] for f in answer['falls']}
+        said, came = falls & counted, fallen(sim, {carrier} | falls & propped) & counted
         both, said_alone, came_alone = both + len(said & came), said_alone + len(said - came), came_alone + len(came - said)
     return both, said_alone, came_alone, len(carriers)
 

@@ -140,7 +140,7 @@ struct Tally {
 
 class SlowDisturbances : public ::testing::Test {
   protected:
-    static constexpr std::uint64_t layouts = 4;
+    static constexpr std::uint64_t layouts = 3;
 
     // Each event of each object, or every second: what topple says of it, and the simulator.
     template <typename Fields, typename Falls>

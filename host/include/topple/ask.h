@@ -26,14 +26,15 @@ struct Unheld {
     // How far its centre of mass then lies outside of what is left, level, metres; NaN: nothing is
     // left, or only what it carries itself.
     double beyond_m = std::numeric_limits<double>::quiet_NaN();
-    double probability = 0;  // of the likeliest of the supports that it lost
+    double probability = 0;  // that it falls: of the likeliest of the supports that it lost, times
+                             // that this one goes
     std::string reason;      // in words
 };
 
 struct FallsWithout {
     std::vector<Unheld> falls;  // in the order in which they fall: those that rest on others later
-    // What touches one of those, or what is taken, where the parse does not know what holds it, or
-    // has it lean on what is beside it: it may fall, too. Ascending.
+    // What may fall, too: less likely than not; or it touches what goes, and the parse does not
+    // know what holds it, or has it lean on what is beside it. Ascending.
     std::vector<std::int32_t> unsure;
 };
 
@@ -47,8 +48,8 @@ struct FallsWithout {
 // gaps as noise leaves them. What is left and touches it from the side alone, as a wall does what
 // hangs on it, holds it.
 //
-// Not reckoned with: that supports may be wrong (Unheld::probability, Support::probability), how
-// much what is left can bear, and friction.
+// Supports may be wrong (Support::probability): what rests on what falls by one falls as likely as
+// both. Not reckoned with: how much what is left can bear, and friction.
 FallsWithout falls_without(const Scene& scene, const std::vector<std::int32_t>& taken);
 
 // An order in which everything but what is grounded can be taken away, so that nothing is taken
@@ -57,7 +58,7 @@ FallsWithout falls_without(const Scene& scene, const std::vector<std::int32_t>& 
 std::vector<std::vector<std::int32_t>> removal_steps(const Scene& scene);
 
 // The same of what has to go so that `before` can be taken away and nothing falls: what would fall
-// without it. The last step is `before`, with what is in a ring with it.
+// without it, however likely. The last step is `before`, with what is in a ring with it.
 std::vector<std::vector<std::int32_t>> removal_steps(const Scene& scene, std::int32_t before);
 
 // What carries an object.

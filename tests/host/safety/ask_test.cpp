@@ -139,7 +139,7 @@ TEST(FallsWithout, NamesAndDoubtsAreTold) {
     stack.scene.objects[1].name = "crate";
     stack.scene.supports[1].probability = 0.62;
     EXPECT_EQ(stack.without({1}).falls.at(0).reason,
-              "Object 2 rests on object 1 (crate), and on nothing else (a support that is 62 % "
+              "Object 2 rests on object 1 (crate), and on nothing else (62 % "
               "likely)");
 }
 
@@ -288,7 +288,7 @@ TEST(RemovalSteps, OfAHighPile) {
     pile.scene.objects.resize(count);
     for (std::int32_t n = 0; n < count; ++n) {
         pile.scene.objects[n].id = n;
-        if (n > 0) pile.carries(n - 1, n);
+        if (n > 0) pile.carries(n - 1, n, 1);
     }
     pile.scene.objects[0].grounded = true;
     const Steps steps = removal_steps(pile.scene);
