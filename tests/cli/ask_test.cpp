@@ -71,7 +71,9 @@ TEST_F(Ask, answers_in_words_and_as_json) {
         const json without = json::parse(succeeds("ask out --json --without " + n).out);
         EXPECT_EQ(without.at("objects"), json({id}));
         const json before = json::parse(succeeds("ask out --json --before " + n).out);
-        EXPECT_EQ(before.at("steps").size(), without.at("falls").size() + 1) << "no rings here";
+        const std::size_t sure = without.at("falls").size() + 1;
+        EXPECT_GE(before.at("steps").size(), sure) << "no rings here";
+        EXPECT_LE(before.at("steps").size(), sure + without.at("unsure").size());
         const std::string words = succeeds("ask out --without " + n).out;
         for (const auto& one : without.at("falls"))
             EXPECT_THAT(words, HasSubstr("  " + one.at("reason").get<std::string>() + ".\n"));

@@ -30,12 +30,12 @@ std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale);
 struct ShakenObject {
     std::array<std::array<double, 2>, 2> way{};  // unit, which is ahead
     std::array<Profile, 2> body{};
-    double floor_shakes = 1;      // all events, so many times as strongly
     bool held = false;            // its centre is above its support, not beyond the end of it
     double base_error_share = 0;  // of b / h, by what is not known of the object
     // Whether what overturns in a plane ahead, or behind, comes to rest lower there: it does not
     // fall where it only comes to lean on a wall, or lies as high as it stood.
     std::array<std::array<bool, 2>, 2> lower{{{true, true}, {true, true}}};
+    double floor_shakes = 1;  // in all events, so many times as strongly
 };
 bool falls(const ShakenObject& object, std::size_t plane, const Motion& motion);
 ShakenObject shaken_object(const RiskObject& object, const MassSpread& stance,
