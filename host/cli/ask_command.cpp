@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +19,7 @@
 #include "core/vectors.h"
 #include "io/json_values.h"
 #include "io/text.h"
+#include "report/view_data.h"
 #include "topple/ask.h"
 #include "topple/error.h"
 #include "topple/parse.h"
@@ -28,7 +31,7 @@ namespace {
 using Steps = std::vector<std::vector<std::int32_t>>;
 
 struct AskArguments {
-    std::string parsed, without, before, holds, push, at;
+    std::string parsed, without, before, holds, push, at, spots;
     bool order = false, json = false;
 };
 
@@ -67,6 +70,12 @@ std::string objects_text(const Scene& scene, const std::vector<std::int32_t>& id
     return listed(words, "and");
 }
 
+std::string unsure_text(const Scene& scene, const std::vector<std::int32_t>& ids) {
+    if (ids.empty()) return "";
+    return "The scan does not show for sure what holds " + objects_text(scene, ids) +
+           ": look first.\n";
+}
+
 Answer what_falls(const Scene& scene, const std::vector<std::int32_t>& taken) {
     const FallsWithout without = falls_without(scene, taken);
     Answer out;
@@ -76,9 +85,7 @@ Answer what_falls(const Scene& scene, const std::vector<std::int32_t>& taken) {
                                       : io::counted(without.falls.size(), "other object") +
                                             (without.falls.size() == 1 ? " falls:\n" : " fall:\n"));
     for (const Unheld& one : without.falls) out.text += "  " + one.reason + ".\n";
-    if (!without.unsure.empty())
-        out.text += "The scan does not show for sure what holds " +
-                    objects_text(scene, without.unsure) + ": look first.\n";
+    out.text += unsure_text(scene, without.unsure);
     out.json = {{"schema", "topple.ask/1"},
                 {"question", "without"},
                 {"objects", taken},
@@ -118,12 +125,20 @@ Answer which_order(const Scene& scene) {
 
 Answer what_before(const Scene& scene, std::int32_t object) {
     const Steps steps = removal_steps(scene, object);
-    return {
-        steps.size() == 1 && steps.front().size() == 1
-            ? "Nothing has to go before " + object_text(scene, object) + ".\n"
-            : "So that nothing falls when " + object_text(scene, object) +
-                  " is taken away, take in this order:\n" + steps_text(scene, steps),
-        {{"schema", "topple.ask/1"}, {"question", "before"}, {"object", object}, {"steps", steps}}};
+    std::vector<std::int32_t> unsure = falls_without(scene, {object}).unsure;
+    for (const std::vector<std::int32_t>& step : steps)
+        std::erase_if(unsure,
+                      [&](std::int32_t id) { return std::ranges::find(step, id) != step.end(); });
+    std::string text = steps.size() == 1 && steps.front().size() == 1
+                           ? "Nothing has to go before " + object_text(scene, object) + ".\n"
+                           : "So that nothing falls when " + object_text(scene, object) +
+                                 " is taken away, take in this order:\n" + steps_text(scene, steps);
+    return {text + unsure_text(scene, unsure),
+            {{"schema", "topple.ask/1"},
+             {"question", "before"},
+             {"object", object},
+             {"steps", steps},
+             {"unsure", unsure}}};
 }
 
 // "the building, from below on 0.12 m2, 98 % likely"
@@ -197,14 +212,38 @@ Answer what_push(const Scene& scene, std::int32_t object, std::optional<Vec3> pl
     return out;
 }
 
+// A correction that makes these one thing, whatever a later parse numbers them.
+Answer which_spots(const Scene& scene, const std::vector<std::int32_t>& objects) {
+    for (const std::int32_t id : objects)
+        if (static_cast<std::size_t>(id) >= scene.objects.size() || scene.objects[id].grounded)
+            throw Error(ErrorKind::usage,
+                        "--spots " + std::to_string(id) +
+                            ": expected an object that is not the building, below " +
+                            std::to_string(scene.objects.size()));
+    const report::PackedView view =
+        report::pack_view(scene, {.voxels = std::numeric_limits<std::size_t>::max()});
+    OrderedJson spots = OrderedJson::array();
+    for (std::size_t g = 0; g < view.groups.size(); ++g)
+        if (view.spots[g] && std::ranges::find(objects, view.groups[g].second) != objects.end())
+            spots.push_back(io::vector(*view.spots[g]));
+    const OrderedJson correction{{"do", "one_thing"}, {"at_m", spots}};
+    return {correction.dump() + "\n",
+            {{"schema", "topple.ask/1"},
+             {"question", "spots"},
+             {"objects", objects},
+             {"correction", correction}}};
+}
+
 // Numbers are read before the scene, which takes longer.
 using Question = std::function<Answer(const Scene&)>;
 Question question_of(const AskArguments& a) {
     const auto given = [](const std::string& text) { return text.empty() ? 0 : 1; };
-    if (given(a.without) + given(a.before) + given(a.holds) + given(a.push) + (a.order ? 1 : 0) !=
+    if (given(a.without) + given(a.before) + given(a.holds) + given(a.push) + given(a.spots) +
+            (a.order ? 1 : 0) !=
         1)
         throw Error(ErrorKind::usage,
-                    "ask: expected one question: --without, --order, --before, --holds or --push");
+                    "ask: expected one question: --without, --order, --before, --holds, --push or "
+                    "--spots");
     if (given(a.at) && !given(a.push))
         throw Error(ErrorKind::usage, "--at: it is of a push; give --push, too");
     if (given(a.push)) {
@@ -215,6 +254,10 @@ Question question_of(const AskArguments& a) {
         };
     }
     if (a.order) return which_order;
+    if (given(a.spots))
+        return [ids = object_numbers("--spots", a.spots)](const Scene& scene) {
+            return which_spots(scene, ids);
+        };
     if (!a.without.empty())
         return [ids = object_numbers("--without", a.without)](const Scene& scene) {
             return what_falls(scene, ids);
@@ -254,6 +297,8 @@ Command add_ask(CLI::App& app) {
     app.add_option("--push", a->push,
                    "Up to which steady push object N stays, to any side, and what then happens");
     app.add_option("--at", a->at, "Where it is pushed, X,Y,Z in metres (default: its top)");
+    app.add_option("--spots", a->spots,
+                   "A correction that makes objects N,N,... one thing, by a spot of each part");
     app.add_flag("--json", a->json, "Print JSON, not sentences");
     return [a] { return run_ask(*a); };
 }

@@ -154,6 +154,7 @@ class Session::State {
     }
     std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget) {
         const std::lock_guard one_at_a_time(update_mutex_);
+        if (frames().empty()) no_frames();
         begin_behind();
         wait_behind(Clock::now() + std::clamp(budget, no_budget, most_budget));
         auto out = told();  // before the next one is
@@ -212,6 +213,9 @@ class Session::State {
     [[noreturn]] static void no_such(FrameId frame) {
         throw Error(ErrorKind::usage, "session: there is no " + name_of(frame));
     }
+    [[noreturn]] static void no_frames() {
+        throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
+    }
     void drop(Frames::iterator kept) {
         bytes_ -= kept->second.frame->bytes();
         frames_.kept.erase(kept);
@@ -234,9 +238,12 @@ class Session::State {
     }
     std::pair<Frames, std::uint64_t> snapshot() const {
         const std::lock_guard lock(frames_mutex_);
-        if (frames_.kept.empty())
-            throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
+        if (frames_.kept.empty()) no_frames();
         return {frames_.kept, changes_};
+    }
+    std::uint64_t changes() const {
+        const std::lock_guard lock(frames_mutex_);
+        return changes_;
     }
     live::Remembered remembered() const {
         const std::lock_guard lock(scene_mutex_);
@@ -250,6 +257,7 @@ class Session::State {
         const Passed passed = passed_through(frames, remembered.poses);
         auto found = std::make_shared<LiveScene>();
         for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
+        found->number = ++parses_;
         bool left_out = false;
         found->result = parsed(frames, [&](std::size_t n, DepthFrame& frame) {
             if (options_.forget_gone) left_out |= coarse_.leave_out(passed.gone[n], frame);
@@ -260,7 +268,7 @@ class Session::State {
         remembered.poses.clear();
         for (const auto& [frame, kept] : frames) remembered.poses[frame] = kept.pose;
         of_all_ = left_out ? nullptr : found->result;
-        parsed_ = std::move(frames);
+        parsed_ = left_out ? std::move(frames) : Frames{};
         parsed_changes_ = changes;
         const std::lock_guard lock(scene_mutex_);
         scene_ = std::move(found);
@@ -288,17 +296,20 @@ class Session::State {
     }
     // The scene that is there; from the second time on without what changed.
     std::shared_ptr<const LiveScene> told() {
+        const bool current = changes() == parsed_changes_;
         const std::lock_guard lock(scene_mutex_);
-        if (scene_ && std::exchange(told_, true)) {
-            auto same = std::make_shared<LiveScene>(*scene_);
-            std::erase_if(same->things, [](const Thing& t) { return t.object < 0; });
-            for (Thing& thing : same->things) thing = {.id = thing.id, .object = thing.object};
-            scene_ = std::move(same);
+        if (!scene_) return nullptr;
+        auto given = std::make_shared<LiveScene>(*scene_);
+        given->current = current;
+        if (std::exchange(told_, true)) {
+            std::erase_if(given->things, [](const Thing& t) { return t.object < 0; });
+            for (Thing& thing : given->things) thing = {.id = thing.id, .object = thing.object};
         }
+        scene_ = std::move(given);
         return scene_;
     }
     void begin_behind() {
-        if (behind_.valid() || snapshot().second == parsed_changes_) return;
+        if (behind_.valid() || changes() == parsed_changes_) return;
         behind_ = std::async(std::launch::async, [this] { find(); });
     }
     // Until what goes on behind has ended, or that time comes.
@@ -382,8 +393,9 @@ class Session::State {
     std::future<void> behind_;
     std::atomic<bool> cancelling_ = false;
     std::atomic<std::uint64_t> parsed_changes_ = 0;
-    Frames parsed_;
-    std::shared_ptr<const ParseResult> of_all_;  // of these and nothing left out; null: not known
+    std::uint64_t parses_ = 0;
+    Frames parsed_;                              // of which something was left out
+    std::shared_ptr<const ParseResult> of_all_;  // with that; null: not known yet
 
     mutable std::mutex scene_mutex_;
     live::Remembered remembered_;

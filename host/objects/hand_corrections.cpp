@@ -144,6 +144,38 @@ void HandCorrections::keep_apart(const SolidScene& solids, graph::ShellOdds& she
     }
 }
 
+void HandCorrections::look_at_joined(TableView<PrimitiveId, std::int32_t> before,
+                                     TableView<PrimitiveId, std::int32_t> now) {
+    const auto of_building = [&](std::int32_t p) { return before[p] < 0; };
+    for (std::size_t n = 0; n < applied_.size(); ++n) {
+        const std::vector<std::int32_t>& at = located_[n].at;
+        if (applied_[n].correction.kind != Kind::one_thing || at.size() < 2) continue;
+        if (std::ranges::all_of(at, of_building)) continue;
+        if (now[at.front()] < 0) {
+            const auto spots = std::ranges::count_if(at, of_building);
+            remark(n,
+                   "what it joins counts as the building now, and is not judged" +
+                       (spots > 0 ? ": " + std::to_string(spots) +
+                                        " of its parts were the building's; leave those out, or "
+                                        "keep all apart from the building"
+                                  : std::string("; keep it apart from the building")),
+                   false);
+            continue;
+        }
+        std::set<std::int32_t> joined;
+        for (const std::int32_t p : at)
+            if (before[p] >= 0) joined.insert(before[p]);
+        std::size_t left = 0;
+        for (std::int32_t p = 0; p < primitives_; ++p)
+            left += joined.contains(before[p]) && now[p] != now[at.front()];
+        if (left > 0)
+            remark(n,
+                   std::to_string(left) + (left == 1 ? " part" : " parts") +
+                       " of the objects that it joins stayed behind: give a spot of every part",
+                   true);
+    }
+}
+
 void HandCorrections::renumber(TableView<PrimitiveId, std::int32_t> number) {
     const auto renumbered = [&](std::vector<std::int32_t>& list) {
         for (std::int32_t& p : list) p = number[p];

@@ -34,6 +34,10 @@ class HandCorrections {
     // a floor for what is none.
     void keep_apart(const SolidScene& solids, graph::ShellOdds& shell);
 
+    // What one_thing did besides, by the groups without it: whether what it joins counts as the
+    // building now, and how many parts of the objects that it joins stayed behind.
+    void look_at_joined(TableView<PrimitiveId, std::int32_t> before,
+                        TableView<PrimitiveId, std::int32_t> now);
     // To be called after the grouping, in this order. Returns what becomes of the solids where
     // things are taken away, which is done in `parts`, too. Throws Error(input) where nothing is
     // left.

@@ -315,6 +315,7 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
             grouping.before = std::move(out.grouping.group);
             hand.keep_apart(*solid.solids, parts.shell);
             out.grouping = group();
+            hand.look_at_joined(grouping.before, out.grouping.group);
         }
         out.taken = hand.take_from(solid, out.grouping, parts.shell, parts.joints);
         hand.fix(solid, out.grouping, parts.shell);

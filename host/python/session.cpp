@@ -89,7 +89,8 @@ class PySession {
         for (const Thing& thing : found->things)
             things.append(
                 py::make_tuple(thing.id, thing.object, to_string(thing.change), thing.moved_m));
-        return py::make_tuple(parsed(*found->result), things, found->frames);
+        return py::make_tuple(parsed(*found->result), things, found->frames, found->number,
+                              found->current);
     }
     Session session_;
 };

@@ -188,14 +188,15 @@ std::string why_moves(const Scene& scene, const Object& object, const Touch& tou
     const Standing standing(scene, object);
     const double height = standing.height_m(touch.place_m);
     if (std::string doubt = doubt_at(scene, standing, height); !doubt.empty()) return doubt;
-    if (!(touch.force_N < standing.slides_N()))
-        return "the push may set it sliding: from " + newtons(standing.slides_N()) + " on it may";
+    const double slides_N = standing.slides_N(),
+                 tips_N = least_around(scene, object, touch.way,
+                                       [&](std::size_t n) { return standing.tips_N(n, height); });
+    const bool slides = !(touch.force_N < slides_N), tips = !(touch.force_N < tips_N);
+    if (tips && !(slides && slides_N <= tips_N))  // of both the one that takes less
+        return "the push may tip it: at that height, from " + newtons(tips_N) + " on it may";
+    if (slides) return "the push may set it sliding: from " + newtons(slides_N) + " on it may";
     if (const double slides_m = standing.slides_m(touch.impulse_Ns); !(slides_m <= touch.slack_m))
         return "the bump may set it sliding by " + io::length_text(slides_m);
-    const double tips_N = least_around(scene, object, touch.way,
-                                       [&](std::size_t n) { return standing.tips_N(n, height); });
-    if (!(touch.force_N < tips_N))
-        return "the push may tip it: at that height, from " + newtons(tips_N) + " on it may";
     const double falls_Ns = least_around(
         scene, object, touch.way, [&](std::size_t n) { return standing.falls_Ns(n, height); });
     if (!(touch.impulse_Ns < falls_Ns))

@@ -19,7 +19,7 @@ TEST_F(Ask, refuses_what_is_no_question) {
     fails(1, "ask mine --order", {"scene.json"});
     put_plane("plane.xyz");
     succeeds("parse plane.xyz -o out --quiet");
-    fails(2, "ask out", {"--without, --order, --before, --holds or --push"});
+    fails(2, "ask out", {"--without, --order, --before, --holds, --push or --spots"});
     fails(2, "ask out --order --holds 1", {"expected one question"});
     for (const std::string option : {"--without", "--before", "--holds"}) {
         fails(2, "ask out " + option + " 0", {"object 0", "the building"});
@@ -64,6 +64,11 @@ TEST_F(Ask, answers_in_words_and_as_json) {
     }
     ASSERT_FALSE(carriers.empty());
     EXPECT_THAT(succeeds("ask out --order").out, HasSubstr("\n  1. Object "));
+    // A correction by spots of its parts, as a file takes it.
+    const json spots =
+        json::parse(succeeds("ask out --spots " + std::to_string(*carriers.begin())).out);
+    EXPECT_EQ(spots.at("do"), "one_thing");
+    EXPECT_FALSE(spots.at("at_m").empty());
 
     std::size_t fallen = 0;
     for (const int id : carriers) {

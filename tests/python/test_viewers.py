@@ -102,6 +102,17 @@ def test_rerun(result, tmp_path):
         assert path.encode() in data, path
 
 
+def test_rerun_follows_a_scan_by_frames(result, tmp_path):
+    rerun = pytest.importorskip('rerun')
+    recording = rerun.RecordingStream('topple-test')
+    recording.save(tmp_path / 'live.rrd')
+    for frame in (3, 7):
+        topple.to_rerun(result, recording=recording, frame=frame)
+    recording.disconnect()
+    data = (tmp_path / 'live.rrd').read_bytes()
+    assert len(data) > 24 * len(result.xyz) and b'frame' in data and b'ClearIsRecursive' in data
+
+
 def test_rerun_asks_where_to(result):
     with raises('usage', 'save='):
         topple.to_rerun(result)

@@ -58,7 +58,8 @@ FallsWithout falls_without(const Scene& scene, const std::vector<std::int32_t>& 
 std::vector<std::vector<std::int32_t>> removal_steps(const Scene& scene);
 
 // The same of what has to go so that `before` can be taken away and nothing falls: what would fall
-// without it, however likely. The last step is `before`, with what is in a ring with it.
+// without it, however likely; not what else is unsure (FallsWithout::unsure). The last step is
+// `before`, with what is in a ring with it.
 std::vector<std::vector<std::int32_t>> removal_steps(const Scene& scene, std::int32_t before);
 
 // What carries an object.

@@ -50,6 +50,9 @@ struct LiveScene {
     std::shared_ptr<const ParseResult> result;
     std::vector<Thing> things;    // by Scene::objects, then what is lost or gone
     std::vector<FrameId> frames;  // that it was parsed from
+    std::uint64_t number = 0;     // of the parse that found it: 1, 2, ...
+    // Whether these, and their poses, were all that there was when an update gave this.
+    bool current = true;
 };
 
 // As write_outputs() of its result, with things.json: the things and their changes.
@@ -106,8 +109,8 @@ class Session {
     // The same within `budget`: a parse that takes longer goes on behind, on a thread of its own,
     // which calls the options' functions (`cancelled` is polled by both), and a later update gives
     // its scene. Until then it is the
-    // one before, without changes; null where there is none yet. LiveScene::frames says which
-    // frames it knows of. What a parse behind throws, the next update does.
+    // one before, without changes; null where there is none yet. LiveScene::current says
+    // whether it knows of all frames and poses. What a parse behind throws, the next update does.
     std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget);
     // update(), then the result of parse() of all frames and poses that are there, bit for bit,
     // also where something has gone, which takes a parse of its own.

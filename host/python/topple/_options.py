@@ -70,7 +70,7 @@ _KINDS = {
     'a whole number from 0': (_whole(64), ('seed', 'max_memory_bytes', 'max_frame_bytes')),
     'a whole number, 1 or more': (_whole(32), ('walks',)),
     'a whole number, 0 for all cores': (_whole(32), ('threads',)),
-    'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint', 'motion_up', 'way')),
+    'three finite numbers, as [1, 0, 0], or None': (_vector, ('up', 'viewpoint', 'motion_up', 'way')),
     'three finite numbers, as [0.5, 1, 0.2]': (_vector, ('place_m',)),
     '"g", "m/s2", "cm/s2", or None': (_text, ('accelerogram_unit',)),
     'True or False': (_flag, ('isolate', 'space_fields', 'visuals', 'forget_gone')),

@@ -29,6 +29,8 @@ class LiveScene(NamedTuple):
     result: "Result"
     things: "list[Thing]"  # by objects of the result, then what is lost or gone
     frames: "list[int]"  # that it was parsed from
+    number: int  # of the parse that found it: 1, 2, ...
+    current: bool  # whether these, and their poses, were all that there was when an update gave it
 
 
 class Session:
@@ -110,9 +112,11 @@ class Session:
         changes, or None."""
         if budget_ms is not None:
             try:
-                budget_ms = int(min(max(float(budget_ms), 0), 1e9))
+                budget_ms = int(min(float(budget_ms), 1e9))
+                if budget_ms < 0:
+                    raise ValueError
             except (TypeError, ValueError, OverflowError):
-                raise usage(f'budget_ms: expected milliseconds, not {budget_ms!r}') from None
+                raise usage(f'budget_ms: expected milliseconds, 0 or more, not {budget_ms!r}') from None
         return self._described(self._begun().update(budget_ms))
 
     def settle(self):
@@ -167,5 +171,5 @@ class Session:
         from . import Result
         if found is None:
             return None
-        parsed, things, frames = found
-        return LiveScene(Result(parsed, None), [Thing(*thing) for thing in things], frames)
+        parsed, things, *more = found
+        return LiveScene(Result(parsed, None), [Thing(*thing) for thing in things], *more)

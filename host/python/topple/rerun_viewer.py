@@ -12,13 +12,14 @@ RELATIONS = {'fixed': (90, 90, 90), 'support': (60, 130, 240), 'adjacent': (200,
 ARROW_M = 0.15  # of the field's greatest speed
 
 
-def to_rerun(result, *, save=None, spawn=False, recording=None):
+def to_rerun(result, *, save=None, spawn=False, recording=None, frame=None):
     """Logs a Result to Rerun (pip install rerun-sdk): scan/points, scan/objects (coloured by unsafety), solids/object_N (voxels),
     objects/object_N (boxes with labels), objects/object_N/why, contacts, supports, fields/NAME and risk/NAME (J by object id).
     Coordinates are the scan's, in metres.
 
     save: the .rrd file to write. spawn: opens the viewer. recording: a rerun.RecordingStream to log to, else one of its own;
-    returns it. One of the three has to be given. Raises topple.Error of kind "usage"."""
+    returns it. One of the three has to be given. frame: of a scan that is still being made, the number on the timeline "frame" from
+    which on this is what there is; without one it is at all times. Raises topple.Error of kind "usage"."""
     if save is None and not spawn and recording is None:
         raise usage("to_rerun: say where to: save='scene.rrd', spawn=True, or recording=...")
     rr = needed('rerun', 'rerun-sdk', 'to_rerun')
@@ -27,7 +28,10 @@ def to_rerun(result, *, save=None, spawn=False, recording=None):
         stream.spawn()
     if save is not None:
         stream.save(os.fspath(save))
-    log = _Log(rr, stream, result)
+    if frame is not None:
+        stream.set_time('frame', sequence=frame)
+        stream.log('/', rr.Clear(recursive=True))
+    log = _Log(rr, stream, result, frame is None)
     for part in (log.axes, log.points, log.solids, log.objects, log.contacts, log.fields, log.risk):
         part()
     stream.flush()
@@ -35,12 +39,12 @@ def to_rerun(result, *, save=None, spawn=False, recording=None):
 
 
 class _Log:
-    def __init__(self, rr, stream, result):
-        self.rr, self.stream, self.result = rr, stream, result
+    def __init__(self, rr, stream, result, static):
+        self.rr, self.stream, self.result, self.static = rr, stream, result, static
         self.turn = geometry.room_axes(result).T
 
     def put(self, path, what):
-        self.stream.log(path, what, static=True)
+        self.stream.log(path, what, static=self.static)
 
     def axes(self):
         """Which of the scan's axes is up, where one is."""

@@ -45,9 +45,12 @@ function calmOnes(scene) {
   return riskiest(scene).filter(object => object.seen_enough !== false && !others.includes(object));
 }
 
-// "3 things to act on, 8 to look at, 6 not judged"
-function headlineText(act, look, unseen, building = 0) {
-  return [act ? `${plural(act, 'thing')} to act on` : 'Nothing to act on', ...look ? [`${look} to look at`] : [],
+// "3 things to act on, 8 to look at, 6 not judged"; grave: how many of those to look at are of the worst category.
+function headlineText(act, look, unseen, building = 0, grave = 0) {
+  const begin = act ? [`${plural(act, 'thing')} to act on`, ...look ? [`${look} to look at`] : []]
+    : grave ? [`${plural(look, 'thing')} to look at, ${grave === look ? 'which' : `${grave} of which`} may be dangerous`]
+      : ['Nothing to act on', ...look ? [`${look} to look at`] : []];
+  return [...begin,
     ...building ? [`${building} in the building to check`] : [], ...unseen ? [`${unseen} not judged`] : []].join(', ');
 }
 
@@ -56,7 +59,8 @@ function headlineOf(scene) {
   const unseen = unseenOnes(scene).length;
   if (nothingJudged(scene)) return `Nothing was judged: the scan does not show what holds ${unseen === 1 ? 'the one thing' : `the ${unseen} things`} here`;
   const possible = (scene.possible_things || []).filter(one => categories.indexOf(one.unsafety_category) >= categories.indexOf('medium'));
-  return headlineText(urgentOnes(scene, true).length, looksOf(scene).length, unseen, possible.length);
+  const looks = looksOf(scene), grave = looks.filter(object => object.unsafety_category === categories[categories.length - 1]);
+  return headlineText(urgentOnes(scene, true).length, looks.length, unseen, possible.length, grave.length);
 }
 
 // Of the notes those that change what one may believe at all: units and poses in doubt, what is no scan, or a coarse one.
@@ -166,7 +170,7 @@ function pieceText(scene, object) {
 
 // Of one whose barrier can't be told from 0: what would upset it.
 function doubtText(object) {
-  const {push_N: push, push_error_N: error, slide_N: slide} = object.overturning || {}, touch_N = 20, look = 'Push it by hand, and look.';
+  const {push_N: push, push_error_N: error, slide_N: slide} = object.overturning || {}, touch_N = 20, look = 'Hold it, push gently, and look.';
   if (object.mode === 'slide' && slide > touch_N) return `How far it may slide on what carries it is too poorly seen to tell: from ${Math.round(slide)} N on it slides. ${look}`;
   if (object.mode !== 'slide' && push > touch_N) return `Its foot is too poorly seen to tell: between nothing and ${Math.round(push + (error || 0))} N at its top would tip it. ${look}`;
   return 'As scanned a touch would upset it.';
@@ -175,7 +179,7 @@ function doubtText(object) {
 // Of one that events which have happened before would have upset by these figures, as host/safety/advise.h has it; '' of others.
 function stoodText(object) {
   const often = 0.05, upset = disturbanceKinds.filter(kind => kind.everyday && (object.fall_chance || {})[kind.name] >= often);
-  return upset.length ? 'It stood there though so many pass: its foot was probably badly seen. Push it by hand first.' : '';
+  return upset.length ? 'It stood there though so many pass: its foot was probably badly seen. Hold it and push gently first.' : '';
 }
 
 // The most that any way out of its place sets free.
@@ -221,7 +225,7 @@ function happensInShort(object) {
 // What to do, in a sentence: of the program's the first clause.
 function todoInShort(object) {
   if (object.seen_enough === false) return 'Go and look what holds it.';
-  if (isDoubtful(object) || stoodText(object)) return 'Push it by hand: does it stand firm?';
+  if (isDoubtful(object) || stoodText(object)) return 'Hold it and push gently: does it stand firm?';
   if (isNearly(object)) return 'Check that it stands firm.';
   const {action = '', sentence} = object.advice || {};
   if (/ tall and heavy: /.test(action)) return 'Tall and heavy: see that it is fastened.';

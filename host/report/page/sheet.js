@@ -84,11 +84,11 @@ function fillSheet(scene) {
   const stood = object => stoodText(object) && `${stoodText(object)} `;
   const doing = object => [object, look(pieceText(scene, object)) + stood(object) + object.advice.action, [bracketText(object), dangerText(scene, object), sheetYears(scene, object)], true];
   const lines = ones => ones.map(one => sheetLine(scene, ...one));
-  // What sets most free first.
+  const order = looksOf(scene);
   const looks = [...unsure.slice(0, listedObjects).map(doing),
     ...doubtful.slice(0, listedDoubts).map(object => [object, `look whether it stands firm. ${doubtText(object)}`, [setsFreeText(object), sheetYears(scene, object)], false]),
     ...[...nearly.slice(0, listedDoubts), ...tall.slice(0, listedDoubts)].map(object => [object, object.advice.action, [], false])]
-    .sort(([a], [b]) => mostReleased(b) - mostReleased(a) || a.id - b.id);
+    .sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
   const holds = unseen.slice(0, listedUnseen).map(object => sheetLine(scene, object, 'go and look what holds it.', [], false));
   const kinds = disturbanceKinds.filter(kind => scene.disturbances.includes(kind.name));
   sheet.replaceChildren(

@@ -67,6 +67,7 @@ function categoryText(object) {
 // Joules per event, their error, and the chance per event that it falls.
 function riskCell(object, name) {
   const risk = object.risk_J[name];
+  if (object.seen_enough === false) return ['\u2013'];
   if (!(risk > 0)) {
     const open = isNearly(object) && riskError(object, name) > 0;
     return [number(risk), ...open ? [element('small', {text: `if its foot is smaller up to ${number(mostReleased(object), 'J')}`})] : []];

@@ -93,8 +93,12 @@ TEST_F(Sessions, AnUpdateKeepsItsBudgetAndTheParseGoesOnBehind) {
     ASSERT_NE(found, nullptr);
     expect_same(found->result->scene, parse(frames_view_of(*walk_), options.parse).scene);
     EXPECT_EQ(found->things.back().change, Change::found);
+    EXPECT_TRUE(found->current);
+    EXPECT_EQ(found->number, 1u);
     session.forget(0);
     const auto before = session.update(-1ms);
+    EXPECT_FALSE(before->current);
+    EXPECT_EQ(before->number, 1u);
     EXPECT_EQ(before->result, found->result);
     EXPECT_EQ(before->things.back().change, Change::none);
     FramesView same = frames_view_of(*walk_);
@@ -104,6 +108,7 @@ TEST_F(Sessions, AnUpdateKeepsItsBudgetAndTheParseGoesOnBehind) {
     expect_same(settled->scene, parse(same, options.parse).scene);
     EXPECT_EQ(session.scene()->frames, (std::vector<FrameId>{1, 2, 3, 4, 5}));
     EXPECT_EQ(session.scene()->result, settled);
+    EXPECT_EQ(session.scene()->number, 2u);
 }
 
 TEST_F(Sessions, CancellingEndsAnUpdateAndWhatGoesOnBehind) {

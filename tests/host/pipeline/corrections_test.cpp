@@ -253,6 +253,17 @@ TEST_F(CorrectedRoom, MayHaveLessOfABuilding) {
     EXPECT_THAT(things.corrections[0].outcome, HasSubstr("both are fixed"));
 }
 
+// A thing that is joined to the building is judged no more, which nobody meant.
+TEST_F(CorrectedRoom, WhatIsJoinedToTheBuildingIsTold) {
+    const Scene scene = parsed({one_thing({on_crate, on_floor})}).scene;
+    ASSERT_TRUE(object_at(scene, on_crate).grounded);
+    EXPECT_FALSE(scene.corrections[0].held);
+    EXPECT_THAT(scene.corrections[0].outcome,
+                HasSubstr("counts as the building now, and is not judged: 1 of its parts"));
+    const Scene meant = parsed({one_thing({on_floor, on_east})}).scene;
+    EXPECT_TRUE(meant.corrections[0].held) << meant.corrections[0].outcome;
+}
+
 TEST_F(CorrectedRoom, TellsWhatComesToNothing) {
     const Scene scene =
         parsed({fixed({in_air}), one_thing({on_crate, in_air}), apart(on_crate, {1.7, 1.2, 0.25}),

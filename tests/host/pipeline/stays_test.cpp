@@ -131,6 +131,9 @@ TEST(Stays, SaysWhyNot) {
     EXPECT_EQ(why({.place_m = top_place, .force_N = 39}), "");
     EXPECT_EQ(why({.place_m = top_place, .force_N = 40}),
               "the push may tip it: at that height, from 39 N on it may");
+    EXPECT_EQ(why({.place_m = top_place, .force_N = 70}),
+              "the push may tip it: at that height, from 39 N on it may")
+        << "it may slide, too, from 59 N on";
     EXPECT_EQ(why({.place_m = middle_place, .force_N = 59}),
               "the push may set it sliding: from 59 N on it may");
     EXPECT_EQ(why({.place_m = middle_place, .impulse_Ns = 15.4}),

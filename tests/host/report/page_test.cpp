@@ -328,16 +328,16 @@ TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
         out.doubt = document.getElementById('detail').textContent;
         dispatchEvent(new Event('beforeprint'));
         out.sheet = document.getElementById('sheet').textContent;
-        is([...document.querySelectorAll('#sheet li strong')].map(node => node.textContent.match(/Object (\d)/)).filter(found => found).map(found => found[1]).join(' '), '5 4 1 3', 'what is to be looked at by energy');
+        is([...document.querySelectorAll('#sheet li strong')].map(node => node.textContent.match(/Object (\d)/)).filter(found => found).map(found => found[1]).join(' '), '3 4 1 5', 'what is to be looked at as the cards have it');
     )");
     const std::string foot =
         "Its foot is too poorly seen to tell: between nothing and 308 N at its top would tip it. "
-        "Push it by hand, and look.";
+        "Hold it, push gently, and look.";
     const std::string stood =
-        "It stood there though so many pass: its foot was probably badly seen. Push it by hand "
-        "first.";
+        "It stood there though so many pass: its foot was probably badly seen. Hold it and push "
+        "gently first.";
     const std::string coarse = "Coarse scan (points 5 cm apart)";
-    page.says("card1", {"from 240 N on it slides. Push it by hand, and look."});
+    page.says("card1", {"from 240 N on it slides. Hold it, push gently, and look."});
     page.says("card3", {stood, "It falls flat to the", "Keep "});
     page.says("card4", {foot});
     page.says("doubt", {foot});

@@ -306,7 +306,7 @@ TEST_F(ShownReport, says_so_where_disturbances_are_missing) {
     page.says("about",
               {"About this scan (3 notes)", "No floor was found on which people could walk"});
     page.says("risk", {"To act on (1)", "To look at (1)",
-                       "Unsure what holds it; its fall can kill.Push it by hand"});
+                       "Unsure what holds it; its fall can kill.Hold it and push gently"});
 }
 
 TEST_F(ShownReport, words_fit_the_numbers) {
