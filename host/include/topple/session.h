@@ -113,7 +113,7 @@ class Session {
     // whether it knows of all frames and poses. What a parse behind throws, the next update does.
     std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget);
     // update(), then the result of parse() of all frames and poses that are there, bit for bit,
-    // also where something has gone, which takes a parse of its own.
+    // also where something has gone, which takes a parse of its own. Its things are scene()'s.
     std::shared_ptr<const ParseResult> settle();
     // From any thread: an update that is at work ends with Error(cancelled), and what goes on
     // behind ends, too, as it does where the session ends. Waits for that. Frames, and the scene

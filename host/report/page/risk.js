@@ -54,13 +54,17 @@ function headlineText(act, look, unseen, building = 0, grave = 0) {
     ...building ? [`${building} in the building to check`] : [], ...unseen ? [`${unseen} not judged`] : []].join(', ');
 }
 
+function isGrave(object) {
+  return object.unsafety_category === categories[categories.length - 1];
+}
+
 function headlineOf(scene) {
   if (!scene.objects.some(object => !object.grounded)) return 'Nothing here can move';
   const unseen = unseenOnes(scene).length;
   if (nothingJudged(scene)) return `Nothing was judged: the scan does not show what holds ${unseen === 1 ? 'the one thing' : `the ${unseen} things`} here`;
   const possible = (scene.possible_things || []).filter(one => categories.indexOf(one.unsafety_category) >= categories.indexOf('medium'));
-  const looks = looksOf(scene), grave = looks.filter(object => object.unsafety_category === categories[categories.length - 1]);
-  return headlineText(urgentOnes(scene, true).length, looks.length, unseen, possible.length, grave.length);
+  const looks = looksOf(scene);
+  return headlineText(urgentOnes(scene, true).length, looks.length, unseen, possible.length, looks.filter(isGrave).length);
 }
 
 // Of the notes those that change what one may believe at all: units and poses in doubt, what is no scan, or a coarse one.
@@ -290,7 +294,7 @@ function fillRisk(panel, scene, on) {
     ...paragraph('hint', objects.length > most ? `And ${objectList(objects.slice(most).map(({id}) => id))}.` : '')] : [];
   const title = [...looks.length ? [`To look at (${looks.length})`] : [], ...unseen.length ? [`not judged (${unseen.length})`] : []];
   panel.append(...act.length ? [cardGroup(`To act on (${act.length})`, items(act, Infinity), true)] : [],
-    ...title.length ? [cardGroup(capital(title.join(', ')), [...items(looks, listedLooks), ...items(unseen, listedUnseen)], !act.length)] : [],
+    ...title.length ? [cardGroup(capital(title.join(', ')), [...items(looks, listedLooks), ...items(unseen, listedUnseen)], !act.length || looks.some(isGrave))] : [],
     ...calm.length ? [cardGroup(`Less urgent (${calm.length})`, items(calm, listedObjects))] : []);
 }
 
