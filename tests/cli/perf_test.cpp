@@ -128,7 +128,8 @@ TEST_F(Evaluate, prints_tables_and_writes_them) {
                              "cut discr.", "false alarm"})
         EXPECT_THAT(done.out, HasSubstr(part));
     EXPECT_EQ(everything(),
-              (std::set<std::string>{"judged", "judged/scores.csv", "judged/tables.txt"}));
+              (std::set<std::string>{"judged", "judged/scores.csv", "judged/segmentation.svg",
+                                     "judged/tables.txt"}));
     EXPECT_TRUE(done.out.starts_with(bytes_of_file(in("judged/tables.txt"))));
 }
 

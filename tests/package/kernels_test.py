@@ -38,7 +38,7 @@ class Project:
 
     def install(self):
         build, first = os.path.join(self.a.work, 'build'), os.path.join(self.a.work, 'first')
-        looked_for = [name for name in self.configure(self.a.source, build, '-DTOPPLE_ONLY=kernels', '-DCMAKE_UNITY_BUILD=ON', '-DCMAKE_BUILD_TYPE=Debug') if OF_TOPPLE.search(name)]
+        looked_for = [name for name in self.configure(self.a.source, build, '-DTOPPLE_ONLY=kernels', '-DCMAKE_UNITY_BUILD=ON', '-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG') if OF_TOPPLE.search(name)]
         check(not looked_for, f'TOPPLE_ONLY=kernels looks for {looked_for}')
         run(self.a.cmake, '--build', build)
         run(self.a.cmake, '--install', build, '--prefix', first)
