@@ -112,6 +112,14 @@ function categoryColour(scene, category) {
   return {none: harmlessColour, low: ramp[0], medium: ramp[2], high: ramp[ramp.length - 1]}[category];
 }
 
+// What whoever reaches for things, a child say, upsets, by what that sets free each time (severityText()).
+function reachCategory(object) {
+  const chance = (object.fall_chance || {}).reach;
+  if (!(chance > 0)) return 'none';
+  const joules = object.risk_J.reach / chance;
+  return joules >= serious_J ? 'high' : joules >= slight_J ? 'medium' : 'low';
+}
+
 function css(colour) {
   return 'rgb(' + colour.join(',') + ')';
 }

@@ -86,6 +86,11 @@ function legend(scene, state, view) {
     box.append(element('div', {className: 'keys'}, [...[...categories].reverse().map(category => line(category, `${category}${category === 'high' ? ' risk' : ''}`)),
       ...scene.objects.some(object => !object.grounded && !object.unsafety_category) ? [line('', 'not judged')] : []]));
   }
+  if (state.mode === 'reach') {
+    const texts = {none: 'nobody\u2019s hands upset it', low: 'does no harm', medium: 'can injure slightly', high: 'can injure badly'};
+    box.append(element('div', {text: `Upset by who reaches for it (${listed(scene.people || ['people'])}):`}),
+      element('div', {className: 'keys'}, [...categories].reverse().map(category => element('div', {}, [colourSwatch(categoryColour(scene, category)), texts[category]]))));
+  }
   if (state.fieldsOn.includes('walks')) {
     box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));
   }
@@ -329,8 +334,13 @@ async function start() {
   };
   const compare = new ComparePanel(scene, visit, say, recolour);
 
+  document.getElementById('wrong').addEventListener('click', () => {
+    mend.open = !mend.open;
+    if (mend.open) mend.scrollIntoView({block: 'nearest'});
+  });
   if (view) {
     if (!scene.coloured) document.querySelector('#colour-by [data-value=photo]').remove();
+    if (!scene.disturbances.includes('reach')) document.querySelector('#colour-by [data-value=reach]').remove();
     const colourBy = radioGroup('colour-by', state.mode, mode => { state.mode = mode; repaint(); });
     // Whoever puts something right must see what is one object.
     mend.addEventListener('toggle', () => { if (state.mode === (mend.open ? 'risk' : 'object')) colourBy(mend.open ? 'object' : 'risk'); });

@@ -83,6 +83,7 @@ class View {
       const grounded = !object || object.grounded;
       let colour = mode === 'primitive' ? colourOf(this.scene, primitive) : objectColour(this.scene, id);
       if (mode === 'risk') colour = !object || grounded ? noColour : categoryColour(this.scene, object.unsafety_category);
+      if (mode === 'reach') colour = !object || grounded ? noColour : categoryColour(this.scene, reachCategory(object));
       // What can't fall steps back: paler and greyer.
       let fade = grounded ? (mode === 'primitive' ? 0.45 : 0.8) : 0;
       // Of a photo the ground is what people recognise their room by.
