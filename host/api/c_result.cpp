@@ -241,6 +241,14 @@ int topple_result_stays_up_to(const topple_result* result, uint64_t index, const
     });
 }
 
+int topple_result_released(const topple_result* result, uint64_t index, double W_J,
+                           double* released, topple_status* status) {
+    return guarded(status, [&] {
+        needed(released, "released_J") = 0;
+        *released = released_J(item(scene_of(result).objects, index, "object"), W_J);
+    });
+}
+
 int topple_result_falls_without(const topple_result* result, const int32_t* taken,
                                 uint64_t taken_count, int32_t* ids, uint64_t capacity,
                                 uint64_t* count, topple_status* status) {

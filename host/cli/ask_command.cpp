@@ -31,7 +31,7 @@ namespace {
 using Steps = std::vector<std::vector<std::int32_t>>;
 
 struct AskArguments {
-    std::string parsed, without, before, holds, push, at, spots;
+    std::string parsed, without, before, holds, push, at, spots, releases, energy;
     bool order = false, json = false;
 };
 
@@ -212,6 +212,25 @@ Answer what_push(const Scene& scene, std::int32_t object, std::optional<Vec3> pl
     return out;
 }
 
+Answer what_released(const Scene& scene, std::int32_t object, double W_J) {
+    if (static_cast<std::size_t>(object) >= scene.objects.size())
+        throw Error(ErrorKind::usage, "--releases " + std::to_string(object) + ": the parse has " +
+                                          io::counted(scene.objects.size(), "object") +
+                                          ", from 0 on");
+    const Object& o = scene.objects[object];
+    const double S_J = released_J(o, W_J);
+    std::string who = object_text(scene, object);
+    who[0] = 'O';
+    return {who + ", given " + io::two_digits(W_J) + " J, " +
+                (S_J > 0 ? "may set free up to " + io::two_digits(S_J) + " J.\n"
+                         : "sets nothing free.\n"),
+            {{"schema", "topple.ask/1"},
+             {"question", "releases"},
+             {"object", object},
+             {"W_J", io::number(W_J)},
+             {"S_J", io::number(S_J)}}};
+}
+
 // A correction that makes these one thing, whatever a later parse numbers them.
 Answer which_spots(const Scene& scene, const std::vector<std::int32_t>& objects) {
     for (const std::int32_t id : objects)
@@ -239,11 +258,24 @@ using Question = std::function<Answer(const Scene&)>;
 Question question_of(const AskArguments& a) {
     const auto given = [](const std::string& text) { return text.empty() ? 0 : 1; };
     if (given(a.without) + given(a.before) + given(a.holds) + given(a.push) + given(a.spots) +
-            (a.order ? 1 : 0) !=
+            given(a.releases) + (a.order ? 1 : 0) !=
         1)
         throw Error(ErrorKind::usage,
-                    "ask: expected one question: --without, --order, --before, --holds, --push or "
-                    "--spots");
+                    "ask: expected one question: --without, --order, --before, --holds, --push, "
+                    "--releases or --spots");
+    if (given(a.releases) != given(a.energy))
+        throw Error(ErrorKind::usage,
+                    "ask: --releases N and --energy JOULES go together: what object N may set "
+                    "free once it is given that energy");
+    if (given(a.releases)) {
+        double W_J = 0;
+        if (!io::parse_number(a.energy, W_J) || !(W_J >= 0))
+            throw Error(ErrorKind::usage,
+                        "--energy " + io::printable(a.energy) + ": expected joules, 0 or more");
+        return [id = object_number("--releases", a.releases), W_J](const Scene& scene) {
+            return what_released(scene, id, W_J);
+        };
+    }
     if (given(a.at) && !given(a.push))
         throw Error(ErrorKind::usage, "--at: it is of a push; give --push, too");
     if (given(a.push)) {
@@ -297,6 +329,9 @@ Command add_ask(CLI::App& app) {
     app.add_option("--push", a->push,
                    "Up to which steady push object N stays, to any side, and what then happens");
     app.add_option("--at", a->at, "Where it is pushed, X,Y,Z in metres (default: its top)");
+    app.add_option("--releases", a->releases,
+                   "What object N may set free once it is given an energy: S(W)");
+    app.add_option("--energy", a->energy, "That energy W, joules");
     app.add_option("--spots", a->spots,
                    "A correction that makes objects N,N,... one thing, by a spot of each part");
     app.add_flag("--json", a->json, "Print JSON, not sentences");

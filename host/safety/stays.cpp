@@ -11,6 +11,7 @@
 #include "io/text.h"
 #include "physics/infinity.h"
 #include "physics/landscape.h"
+#include "safety/fields.h"
 #include "topple/error.h"
 
 namespace topple {
@@ -207,6 +208,11 @@ std::string why_moves(const Scene& scene, const Object& object, const Touch& tou
 
 bool stays(const Scene& scene, const Object& object, const Touch& touch) {
     return why_moves(scene, object, touch).empty();
+}
+
+double released_J(const Object& object, double W_J) {
+    if (!(W_J >= 0)) refuse("W_J " + io::short_number(W_J) + ": expected joules, 0 or more");
+    return object.grounded ? 0 : safety::instability(object.instability, W_J);
 }
 
 double stays_up_to_N(const Scene& scene, const Object& object, const Vec3& place_m,

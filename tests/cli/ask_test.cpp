@@ -19,7 +19,7 @@ TEST_F(Ask, refuses_what_is_no_question) {
     fails(1, "ask mine --order", {"scene.json"});
     put_plane("plane.xyz");
     succeeds("parse plane.xyz -o out --quiet");
-    fails(2, "ask out", {"--without, --order, --before, --holds, --push or --spots"});
+    fails(2, "ask out", {"--without, --order, --before, --holds, --push, --releases or --spots"});
     fails(2, "ask out --order --holds 1", {"expected one question"});
     for (const std::string option : {"--without", "--before", "--holds"}) {
         fails(2, "ask out " + option + " 0", {"object 0", "the building"});
@@ -64,6 +64,12 @@ TEST_F(Ask, answers_in_words_and_as_json) {
     }
     ASSERT_FALSE(carriers.empty());
     EXPECT_THAT(succeeds("ask out --order").out, HasSubstr("\n  1. Object "));
+    const std::string some = std::to_string(*carriers.begin());
+    const auto& steps_of_it = objects[*carriers.begin()].at("instability");
+    const json none = json::parse(succeeds("ask out --json --energy 0 --releases " + some).out);
+    EXPECT_GE(none.at("S_J"), 0);
+    const json all = json::parse(succeeds("ask out --json --energy 1e9 --releases " + some).out);
+    EXPECT_EQ(all.at("S_J"), steps_of_it.empty() ? json(0.0) : steps_of_it.back().at("S_J"));
     // A correction by spots of its parts, as a file takes it.
     const json spots =
         json::parse(succeeds("ask out --spots " + std::to_string(*carriers.begin())).out);

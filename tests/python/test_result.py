@@ -378,7 +378,10 @@ def test_stays_says_what_may_be_touched(result):
         least = result.stays_up_to_N(o, at)
         assert result.stays(o, at, force_N=0.99 * least)
         assert re.fullmatch('the push may (set it sliding|tip it): (at that height, )?from .+ N on it may', result.why_moves(o, at, force_N=1.01 * least))
-    assert result.stays(0, [0, 0, 0], force_N=1e6)
+        assert result.released_J(o, 1e9) == max(o.instability[:, 1], default=0) and result.released_J(o.id, 0) == 0
+    assert result.stays(0, [0, 0, 0], force_N=1e6) and result.released_J(0, 1e9) == 0
+    with pytest.raises(topple.Error, match='W_J: expected joules'):
+        result.released_J(0, float('nan'))
 
 
 @pytest.mark.parametrize('given, words', [

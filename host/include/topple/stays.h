@@ -59,4 +59,9 @@ std::string why_moves(const Scene& scene, const Object& object, const Touch& tou
 double stays_up_to_N(const Scene& scene, const Object& object, const Vec3& place_m,
                      const Vec3& way = {});
 
+// S(W) (paper, Eq. 6): the most that an object may set free once it is given W_J joules, whichever
+// way, as Object::instability has it; 0 below its barrier, and for what is grounded. Throws
+// Error(usage) for energies below 0 or NaN.
+double released_J(const Object& object, double W_J);
+
 }  // namespace topple

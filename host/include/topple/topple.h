@@ -396,6 +396,9 @@ int topple_result_stays(const topple_result* result, uint64_t index, const doubl
 /* The steady push there up to which it stays, newtons: 0 where nobody knows. As above. */
 int topple_result_stays_up_to(const topple_result* result, uint64_t index, const double* place_m,
                               const double* way, double* force_N, topple_status* status);
+/* S(W): the most that an object may set free once it is given W_J joules. */
+int topple_result_released(const topple_result* result, uint64_t index, double W_J,
+                           double* released_J, topple_status* status);
 /* Questions before things are taken away (topple/ask.h). `count` becomes how many ids the answer
  * has; the first `capacity` of them go to `ids`. What falls, in that order, once `taken` is gone:
  */

@@ -13,6 +13,7 @@ a sort by unsafety alone would be left in no order. What goes wrong is raised as
 """
 import copyreg
 import json
+import numbers
 import os
 import threading
 from typing import NamedTuple
@@ -245,6 +246,14 @@ class Result:
         """The steady push, newtons, up to which an object stays where it is when it is pushed at place_m towards `way`, as stays() has them;
         0 where nobody knows, inf for the ground."""
         return _topple.stays_up_to_N(self._whole('stays_up_to_N'), _spots.numbered(self.objects, item, 'object').id, _option('place_m', place_m), _option('way', way))
+
+    def released_J(self, item, W_J):
+        """S(W), the paper's Eq. 6: the most that an object may set free once it is given W_J joules; 0 below its barrier, and for the ground."""
+        o = _spots.numbered(self.objects, item, 'object')
+        if not (isinstance(W_J, numbers.Real) and W_J >= 0):
+            raise _usage(f'W_J: expected joules, 0 or more, not {W_J!r}')
+        steps = np.asarray(o.instability, float).reshape(-1, 2)
+        return 0.0 if o.grounded else float(max(steps[steps[:, 0] <= W_J, 1], default=0))
 
     def object_at(self, place_m, within_m):
         """The id of the object at a place, three numbers, metres in the frame of the result's points: that of the nearest point that belongs

@@ -122,6 +122,17 @@ TEST_F(CApi, SaysWhatHoldsWhatAndHowFirmly) {
         topple_result_stays_up_to(result, 1, crate.center_of_mass_m, nullptr, &least, &status),
         TOPPLE_OK);
     EXPECT_GT(least, 0);
+    ASSERT_GT(crate.instability_count, 0u);
+    const topple_step last = crate.instability[crate.instability_count - 1];
+    double released = -1;
+    for (const double energy : {last.W_J, 2 * last.W_J}) {
+        ASSERT_EQ(topple_result_released(result, 1, energy, &released, &status), TOPPLE_OK);
+        EXPECT_EQ(released, last.S_J);
+    }
+    ASSERT_EQ(topple_result_released(result, 1, 0.5 * crate.barrier_J, &released, &status),
+              TOPPLE_OK);
+    EXPECT_EQ(released, 0);
+    EXPECT_EQ(topple_result_released(result, 1, -1, &released, &status), TOPPLE_ERROR_USAGE);
     for (const auto& [share, expected] : {std::pair{0.99, 1}, {1.01, 0}}) {
         int stays = -1;
         ASSERT_EQ(topple_result_stays(result, 1, crate.center_of_mass_m, nullptr, share * least, 0,
