@@ -181,13 +181,16 @@ Answer what_holds(const Scene& scene, std::int32_t object) {
     return out;
 }
 
+const Object& object_of(const Scene& scene, const char* option, std::int32_t id) {
+    if (static_cast<std::size_t>(id) < scene.objects.size()) return scene.objects[id];
+    throw Error(ErrorKind::usage, std::string(option) + " " + std::to_string(id) +
+                                      ": the parse has " +
+                                      io::counted(scene.objects.size(), "object") + ", from 0 on");
+}
+
 // At a place, or at the middle of its top.
 Answer what_push(const Scene& scene, std::int32_t object, std::optional<Vec3> place_m) {
-    if (static_cast<std::size_t>(object) >= scene.objects.size())
-        throw Error(ErrorKind::usage, "--push " + std::to_string(object) + ": the parse has " +
-                                          io::counted(scene.objects.size(), "object") +
-                                          ", from 0 on");
-    const Object& o = scene.objects[object];
+    const Object& o = object_of(scene, "--push", object);
     const Vec3 at = place_m.value_or(along(o.box_middle_m, o.size_m[2] / 2, scene.up));
     const std::string doubt = why_moves(scene, o, {.place_m = at});
     const double force_N = doubt.empty() ? stays_up_to_N(scene, o, at) : 0;
@@ -213,11 +216,7 @@ Answer what_push(const Scene& scene, std::int32_t object, std::optional<Vec3> pl
 }
 
 Answer what_released(const Scene& scene, std::int32_t object, double W_J) {
-    if (static_cast<std::size_t>(object) >= scene.objects.size())
-        throw Error(ErrorKind::usage, "--releases " + std::to_string(object) + ": the parse has " +
-                                          io::counted(scene.objects.size(), "object") +
-                                          ", from 0 on");
-    const Object& o = scene.objects[object];
+    const Object& o = object_of(scene, "--releases", object);
     const double S_J = released_J(o, W_J);
     std::string who = object_text(scene, object);
     who[0] = 'O';
@@ -239,8 +238,8 @@ Answer which_spots(const Scene& scene, const std::vector<std::int32_t>& objects)
                         "--spots " + std::to_string(id) +
                             ": expected an object that is not the building, below " +
                             std::to_string(scene.objects.size()));
-    const report::PackedView view =
-        report::pack_view(scene, {.voxels = std::numeric_limits<std::size_t>::max()});
+    const report::PackedView view = report::pack_view(
+        scene, {.voxels = std::numeric_limits<std::size_t>::max(), .points = 0, .arrows = 0});
     OrderedJson spots = OrderedJson::array();
     for (std::size_t g = 0; g < view.groups.size(); ++g)
         if (view.spots[g] && std::ranges::find(objects, view.groups[g].second) != objects.end())

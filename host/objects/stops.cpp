@@ -4,7 +4,11 @@
 namespace topple {
 
 Stops::Stops(const ObjectStage& stage)
-    : stage_(stage), fixed_(fixed_primitives(stage.object_of_primitive, stage.objects)) {}
+    : stage_(stage),
+      fixed_(fixed_primitives(stage.object_of_primitive, stage.objects)),
+      carriers_(stage.objects.size()) {
+    for (const Support& s : stage.supports) carriers_[s.supported].push_back(s.supporter);
+}
 
 std::vector<bool> Stops::of(std::span<const std::int32_t> primitives, double mass_kg) const {
     std::vector<bool> out = fixed_;
@@ -20,8 +24,7 @@ std::vector<bool> Stops::of(std::span<const std::int32_t> primitives, double mas
     for (std::size_t n = 0; n < carried.size(); ++n) {
         const Body& on = stage_.objects[carried[n]];
         if (on.grounded) continue;
-        for (const Support& s : stage_.supports)
-            if (s.supported == carried[n]) carry(s.supporter);
+        for (const std::int32_t by : carriers_[carried[n]]) carry(by);
         if (n < own || on.candidate.body.mass_kg < mass_kg) continue;
         for (const std::int32_t p : on.candidate.primitives) out[p] = true;
     }

@@ -21,6 +21,7 @@ class Stops {
   private:
     const ObjectStage& stage_;
     Table<PrimitiveId, bool> fixed_;
+    Table<ObjectId, std::vector<std::int32_t>> carriers_;
 };
 
 }  // namespace topple

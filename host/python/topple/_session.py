@@ -37,10 +37,10 @@ class Session:
     """A scan that grows: depth frames come one by one, a SLAM system corrects their poses, and update() says what is there, and what came,
     moved and has gone since.
 
-    intrinsics: a topple.stages.Intrinsics of all frames, or a dict as intrinsics.json has it. forget_gone: whether readings are left out at places that most of the latest looks
-    see through. max_frame_bytes: that kept frames take, compressed (640 x 480 pixels about 0.3 MB); where that is not enough those go whose
-    camera has a neighbour in time next to it. The other options are those of parse(). One thread may add frames while another updates.
-    Raises Error as parse() does."""
+    intrinsics: a topple.stages.Intrinsics of all frames, or a dict as intrinsics.json has it. forget_gone: whether readings are left out at
+    places that most of the latest looks see through. max_frame_bytes: that kept frames take, compressed (640 x 480 pixels about 0.3 MB); where
+    that is not enough those go whose camera has a neighbour in time next to it. The other options are those of parse(). One thread may add
+    frames while another updates. Raises Error as parse() does."""
 
     @named
     def __init__(self, intrinsics, *, device=None, voxel_m=0.0, up=None, disturbances=None, seed=1, density_kg_m3=700.0, friction=0.3,

@@ -87,7 +87,7 @@ function legend(scene, state, view) {
       ...scene.objects.some(object => !object.grounded && !object.unsafety_category) ? [line('', 'not judged')] : []]));
   }
   if (state.mode === 'reach') {
-    const texts = {none: 'nobody\u2019s hands upset it', low: 'does no harm', medium: 'can injure slightly', high: 'can injure badly'};
+    const texts = {none: 'nobody\u2019s hands upset it', low: severityText(0), medium: severityText(slight_J), high: severityText(serious_J)};
     box.append(element('div', {text: `Upset by who reaches for it (${listed(scene.people || ['people'])}):`}),
       element('div', {className: 'keys'}, [...categories].reverse().map(category => element('div', {}, [colourSwatch(categoryColour(scene, category)), texts[category]]))));
   }
