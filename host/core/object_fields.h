@@ -35,16 +35,20 @@ template <>
 inline constexpr auto kind<Hold> = described(
     "Hold", "What one kind of people does to a thing within reach, from the floor.",
     field("by", &Hold::by, "the kind of people, as in `--people`"),
-    field("act", &Hold::act,
-          "`pull`: as high as it is reached; `lean`: at 0.6 m above the floor, or where it is "
-          "nearest to that; `climb`: onto its front",
-          Note{.one_of = "\"pull\", \"lean\", \"climb\""}),
+    field(
+        "act", &Hold::act,
+        "`pull`: as high as it is reached; `lean`: at 0.6 m above the floor, or where it is "
+        "nearest to that; `climb`: onto its front; `open`: its drawers, if it has any, and by who "
+        "climbs onto them; `fall`: against it",
+        Note{.one_of = "\"pull\", \"lean\", \"climb\", \"open\", \"fall\""}),
     field("chance", &Hold::chance, "of it per hold, 0 to 1, from all sides"),
     field("fall_chance", &Hold::fall_chance, "the same of those that upset it"),
     field("place_m", &Hold::place_m,
           "where one of them acts, one that upsets it if any does, metres; of who climbs where "
-          "their weight does, before its front"),
-    field("force_N", &Hold::force_N, "that one's force, newtons"));
+          "their weight does, and that of drawers, before its front"),
+    field("force_N", &Hold::force_N, "that one's force, newtons; none of who falls"),
+    field("impulse_Ns", &Hold::impulse_Ns,
+          "what the thing takes of who falls against it, newton seconds; else none"));
 
 template <>
 inline constexpr auto kind<PossibleThing> = described(

@@ -94,7 +94,6 @@ ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
         density[o] = inertia_density[o] = prior.median_kg_m3;
         out.objects[o].model = MassModel::kind;
         out.objects[o].density_error_share = prior.error_share();
-        looks[o] = {};  // the kinds know what they hold
     }
     if (options.contents_kg_m3) {
         const std::vector<physics::ClosedOdds> odds = physics::closed_odds(looks, alike);
@@ -103,6 +102,8 @@ ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
             if (share == 0) continue;
             const physics::ClosedBody body = physics::closed_body(
                 looks[o], volume[o], options.density_kg_m3, *options.contents_kg_m3);
+            out.objects[o].drawers = physics::drawers_of(looks[o], odds[o].probability, body);
+            if (out.objects[o].model == MassModel::kind) continue;  // which knows what it holds
             const double less_kg_m3 = options.density_kg_m3 - body.density_kg_m3;
             if (share > 0.5) out.objects[o].model = MassModel::closed;
             physics::BodyError& error = out.objects[o].contents_error;

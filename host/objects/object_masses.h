@@ -11,6 +11,7 @@
 #include "core/solid_scene.h"
 #include "physics/bodies.h"
 #include "physics/body_errors.h"
+#include "physics/closed_furniture.h"
 #include "physics/inertia.h"
 #include "topple/parse.h"
 
@@ -40,6 +41,7 @@ struct ObjectMasses {
         double density_error_share = 0;     // of its mass: 0 where a density was given
         physics::Symmetric inertia{};       // about its centre of mass
         double alike_error_kg = 0;          // see physics/repeated_objects.h
+        physics::Drawers drawers;           // grid frame
     };
     Table<PrimitiveId, double> density_kg_m3;        // mass over volume
     Table<PrimitiveId, physics::Symmetric> moments;  // physics::second_moments

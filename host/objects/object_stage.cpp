@@ -99,6 +99,7 @@ void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks
 void take_mass(const ObjectMasses::Object& mass, Body& object) {
     object.mass_model = mass.model;
     object.inertia = mass.inertia;
+    object.drawers = mass.drawers;
     add_independent(mass.contents_error, object.body_error);
     // What is off of alike things holds what is off of each by itself.
     object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);

@@ -30,6 +30,8 @@ struct FurnitureLooks {
     // Backing within a voxel less than 8 cm, and within a voxel more: where the voxels' borders
     // fall is chance, and moves what lies between two surfaces by as much.
     std::array<double, 2> backing_range{};
+    std::array<double, 2> front{};  // from that side to the one across: level, unit
+    double deep_m = 0;              // from one to the other
 };
 
 // Of each object, without what of it is of the room's shell. volumes_m3: by object.
@@ -53,6 +55,7 @@ struct ClosedBody {
     static constexpr double board_m = 0.018;
     double density_kg_m3 = 0;          // mass over the volume of all of it
     double inertia_density_kg_m3 = 0;  // of an even solid with the same inertia
+    double contents_share = 0;         // of the mass
     BodyError error;                   // by what is not known of the contents alone
 };
 
@@ -61,5 +64,17 @@ struct ClosedBody {
 // to lie anywhere in the middle half of the height.
 ClosedBody closed_body(const FurnitureLooks& looks, double volume_m3, double board_kg_m3,
                        double contents_kg_m3);
+
+// What can be drawn out of a thing, all at once: its drawers with what they hold, as furniture is
+// tested (16 CFR 1261, 2022; ASTM F2057-23).
+struct Drawers {
+    double probability = 0;       // that it has any
+    std::array<double, 2> way{};  // level, unit
+    double out_m = 0;             // how far
+    double mass_share = 0;        // of the thing's
+};
+
+// Of furniture that is closed with such a probability. Its contents are in drawers, if it has any.
+Drawers drawers_of(const FurnitureLooks& looks, double closed, const ClosedBody& body);
 
 }  // namespace topple::physics

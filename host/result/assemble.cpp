@@ -145,6 +145,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                 for (Hold hold : safety.disturbances[d].holds[o]) {
                     hold.place_m = to_input.place(hold.place_m);
                     hold.force_N = to_input.way(hold.force_N);
+                    hold.impulse_Ns = to_input.way(hold.impulse_Ns);
                     to.holds.push_back(std::move(hold));
                 }
         }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "physics/bodies.h"
+#include "physics/closed_furniture.h"
 #include "physics/directions.h"
 #include "physics/toppling.h"
 #include "safety/fall_zone.h"
@@ -43,6 +44,7 @@ struct RiskObject {
     std::shared_ptr<const physics::Toppling> toppling;
     double barrier_error_J = 0;  // one standard error
     bool slides = false;         // rather than that it tips
+    physics::Drawers drawers;    // that people may pull out
     double floor_shakes = 1;     // in earthquakes, so many times as strongly as the ground floor
     // Not as measured, but as at an end of that error (risk_error.h): the border of its support
     // lies so much further out, and the roots of its barriers are larger by so much.
@@ -134,6 +136,13 @@ double over_edge_J(const RiskObject& object, const Vec3& way);
 // Straight on to where its support ends; infinite where it does not. Where no directions are known,
 // slide_distance_m, and `support_m` at least.
 double slide_towards_m(const RiskObject& object, const Vec3& way, double support_m);
+
+// The mass that a level blow at that height meets of a thing that is free.
+double met_mass_kg(const RiskObject& object, const Vec3& way, double height_m);
+// The share of its kinetic energy that a mass which strikes a thing gives to it, by conservation of
+// momentum: (1 + e)^2 m M / (m + M)^2, M being the mass that it meets.
+double taken_share(const RiskObject& object, double mass_kg, const Vec3& way, double height_m,
+                   double restitution);
 
 Risk risk_of(std::span<const WorkSample> work, const RiskObject& object, std::size_t draws);
 

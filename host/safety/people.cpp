@@ -33,21 +33,24 @@ constexpr std::array<BodyPart, 5> chair_parts{{
 //       shoulder 0.818, arm 0.44; the grip of a raised arm 1.18.
 //   [F] Fryar and others 2021 (NHANES 2015-2018): from 80 years on about 1.65 m and 73 kg.
 //   [G] Hausdorff and others 1999, J Appl Physiol 86:1040: 1.20 m/s at 6 and 7 years.
-//   [S] Sutherland and others 1980, J Bone Joint Surg 62-A:336: 0.72 m/s at 2 years.
-//   [T] Tolerico and others 2007, J Rehabil Res Dev 44:561: 0.79 m/s in manual wheelchairs.
-//   [W] de Winter and others 1994 (doi 10.1080/09298349408945742): children's pushes and tugs go
+//   [H] Adolph and others 2012, Psychol Sci 23:1387: those of 12 to 19 months fall 17 times an
+//   hour. [S] Sutherland and others 1980, J Bone Joint Surg 62-A:336: 0.72 m/s at 2 years. [T]
+//   Tolerico and others 2007, J Rehabil Res Dev 44:561: 0.79 m/s in manual wheelchairs. [W] de
+//   Winter and others 1994 (doi 10.1080/09298349408945742): children's pushes and tugs go
 //       with their weight. Toddlers' are those of [A] times theirs over that of 2 to 5, 16 kg [C].
-// Set by hand: how hard elderly people hold on to a thing; the mass of a wheelchair and its user.
+// Set by hand: how hard elderly people hold on to a thing; the mass of a wheelchair and its user;
+// how often others than toddlers fall.
 constexpr std::array<PersonKind, 5> person_table{{
-    {"adults", 1.80, 70, 1.3, 0.20, 0.05, body_parts, 0, 0, 0, 0, 0, false},
+    {"adults", 1.80, 70, 1.3, 0.20, 0.05, body_parts, 0, 0, 0, 0, 0, false, 0, 1.47},
     // [C, A, G]; [D, A]
-    {"children", 1.15, 27, 1.2, 0.13, 0.05, body_parts, 0, 1.36, 0.51, 77, 77, true},
-    // [C, S]; [D, W]
-    {"toddlers", 0.86, 12.5, 0.72, 0.10, 0.05, body_parts, 0, 1.01, 0.38, 60, 60, true},
+    {"children", 1.15, 27, 1.2, 0.13, 0.05, body_parts, 0, 1.36, 0.51, 77, 77, true, 0.1, 0.94},
+    // [C, S]; [D, W]; [H]
+    {"toddlers", 0.86, 12.5, 0.72, 0.10, 0.05, body_parts, 0, 1.01, 0.38, 60, 60, true, 1, 0.70},
     // [F, B]; [D]
-    {"elderly", 1.65, 73, 0.95, 0.18, 0.05, body_parts, 0.62, 1.35, 0.73, 100, 100, false},
+    {"elderly", 1.65, 73, 0.95, 0.18, 0.05, body_parts, 0.62, 1.35, 0.73, 100, 100, false, 0.1,
+     1.35},
     // [T]; a step of 2 cm stops it
-    {"wheelchair", 1.35, 90, 0.79, 0.35, 0.02, chair_parts, 0, 0, 0, 0, 0, false},
+    {"wheelchair", 1.35, 90, 0.79, 0.35, 0.02, chair_parts, 0, 0, 0, 0, 0, false, 0, 1.10},
 }};
 
 // As if one of that height had moved so.

@@ -19,6 +19,8 @@ struct PersonKind {
     // floor; it pulls at them and leans on them so hard. 0 N: it does not reach for things.
     double reach_low_m, reach_high_m, arm_m, pull_N, push_N;
     bool climbs;
+    double falls;       // against what is in reach, as often as any other act
+    double shoulder_m;  // no higher than which it strikes then
 
     bool reaches() const { return pull_N > 0; }
 };

@@ -41,6 +41,16 @@ double instability(const RiskObject& object, const WorkSample& event) {
     return object.toppling->struck_J(W_J, event.direction, event.height_m);
 }
 
+double met_mass_kg(const RiskObject& object, const Vec3& way, double height_m) {
+    return object.toppling ? object.toppling->met_mass_kg(way, height_m) : object.mass_kg;
+}
+
+double taken_share(const RiskObject& object, double mass_kg, const Vec3& way, double height_m,
+                   double restitution) {
+    const double met_kg = met_mass_kg(object, way, height_m), both = mass_kg + met_kg;
+    return both > 0 ? mass_kg * met_kg * std::pow((1 + restitution) / both, 2) : 0;
+}
+
 double push_barrier_J(const RiskObject& object, const Vec3& way) {
     return at_end_J(object,
                     object.toppling ? object.toppling->push_barrier_J(way) : object.barrier_J);

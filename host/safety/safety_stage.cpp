@@ -52,6 +52,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
         r.barrier_J = o.instability.barrier_J;
         r.barrier_error_J = o.seen_error_J;
         r.floor_shakes = o.floor_shakes;
+        r.drawers = o.drawers;
         r.slides = o.instability.mode == physics::Instability::Mode::slide;
         r.base_m = o.candidate.support_height_m;
         r.center = o.candidate.body.center;

@@ -7,8 +7,8 @@
 Generates rooms of each kind, parses and exports them. On each object that is free in the export as it was scanned, without struts
 or a pad and with parts that fill no half more than it, that stands by itself and whose barrier is above its error, its `holds` act one by one; what carries it stays where it is, and other loose
 things, on which topple says that nothing leans for good, do not stand in its way. A hand pulls at the object's middle, at the height of the hold, with a force that grows in a second and
-follows what moves at 0.3 m/s at most, for an arm's length. A climber's weight grows in a second at its place before the front,
-and goes along. The object falls where its centre of mass ends 5 mm lower, within 5 s: S(W) is what comes free.
+follows what moves at 0.3 m/s at most, for an arm's length. A climber's weight, and that of drawers, grows in a second at its place
+before the front, and goes along. Who falls gives the object an impulse within 20 ms. The object falls where its centre of mass ends 5 mm lower, within 5 s: S(W) is what comes free.
 """
 import argparse
 import json
@@ -25,7 +25,7 @@ import numpy as np
 from landings import STATE, UNSTABLE, Room, made
 from rooms import add_options, chosen
 
-GROWS_S, WATCHED_S, HAND_M_S = 1.0, 5.0, 0.3
+GROWS_S, WATCHED_S, HAND_M_S, BLOW_S = 1.0, 5.0, 0.3, 0.02
 LOWER_M, FELL_M = 0.005, 0.05
 RESTS_M_S, RESTS_S = 0.005, 0.3  # slower for so long, it stays as it is
 ARM_M = {'children': 0.51, 'toddlers': 0.38, 'elderly': 0.73}
@@ -50,12 +50,14 @@ def falls(room, o, hold):
     model.geom_conaffinity[:] = np.where(loose, 0, room.conaffinity)
     mujoco.mj_setState(model, data, room.state, STATE)
     mujoco.mj_forward(model, data)
-    force, point = room.to_world[:3, :3] @ hold['force_N'], room.world(hold['place_m'])
+    blow = hold['act'] == 'fall'
+    force, point = room.to_world[:3, :3] @ (np.array(hold['impulse_Ns']) / BLOW_S if blow else hold['force_N']), room.world(hold['place_m'])
     most = np.linalg.norm(force)
     way = force / most
     turn = data.xmat[body].reshape(3, 3)
     local, start = turn.T @ (point - data.xpos[body]), data.xipos[body].copy()
-    if hold['act'] != 'climb':  # at its middle, as it has settled
+    hangs = hold['act'] in ('climb', 'open')
+    if not hangs:  # at its middle, as it has settled
         point[:2] = start[:2]
         local = turn.T @ (point - data.xpos[body])
     unstable, released = sum(data.warning[w].number for w in UNSTABLE), False
@@ -70,7 +72,9 @@ def falls(room, o, hold):
         last = at
         data.qfrc_applied[:] = 0
         grown = most * min(1.0, step * model.opt.timestep / GROWS_S)
-        if hold['act'] != 'climb':
+        if blow:
+            grown = most if step * model.opt.timestep < BLOW_S else 0.0
+        elif not hangs:
             released = released or (at - point) @ way > ARM_M[hold['by']]
             # Not so stiff that it throws what is light.
             stiff = 0.1 * model.body_mass[body] / model.opt.timestep
@@ -155,7 +159,7 @@ def main():
         if r['topple'] != r['simulator']:
             print(f"  {r['room']} object {r['object']} ({r['mass_kg']:.1f} kg, {' x '.join(f'{s:.2f}' for s in r['size_m'])} m, {r['mode']}): "
                   f"{r['by']} {r['act']}, falls in {'topple' if r['topple'] else 'MuJoCo'} alone")
-    for act in ('pull', 'lean', 'climb'):
+    for act in ('pull', 'lean', 'climb', 'open', 'fall'):
         print(f"{act}: {line([r for r in rows if r['act'] == act])}")
     print(f'all: {line(rows)}; without: {dict(none)}')
     if a.json:

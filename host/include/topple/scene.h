@@ -184,10 +184,12 @@ struct Fragility {
 // at which they do: one that upsets it, where one does.
 struct Hold {
     std::string by;   // the kind of people
-    std::string act;  // "pull" | "lean" | "climb"
+    std::string act;  // "pull" | "lean" | "climb" | "open" | "fall"
     // Per event of "reach", and of those that upset it.
     double chance = 0, fall_chance = 0;
-    Vec3 place_m{}, force_N{};  // where it acts; of who climbs where their weight does, before it
+    // Where it acts; of who climbs, and of drawers, where their weight does, before it.
+    Vec3 place_m{}, force_N{};
+    Vec3 impulse_Ns{};  // that the thing takes of who falls against it
 };
 
 // What a doubtful object may be in place of what it was taken for, and what that would mean.

@@ -241,7 +241,7 @@ function todoInShort(object) {
 function reachText(object) {
   const all = object.holds || [], unique = values => [...new Set(values)];
   if (!all.length) return '';
-  const acts = {pull: 'pulled at', lean: 'leaned on', climb: 'climbed'}, falls = unique(all.filter(hold => hold.fall_chance > 0).map(hold => acts[hold.act]));
+  const acts = {pull: 'pulled at', lean: 'leaned on', climb: 'climbed', open: 'opened, if it has drawers', fall: 'fallen against'}, falls = unique(all.filter(hold => hold.fall_chance > 0).map(hold => acts[hold.act]));
   return `Within reach of ${listed(unique(all.map(hold => hold.by)))}${falls.length ? `: it falls when ${falls.join(' or ')}` : ', who do not upset it'}`;
 }
 

@@ -82,15 +82,10 @@ std::vector<Strike> all_strikes(const Strikes& strikes, const SecondaryMotion& m
                 strike.sample.direction = {dx, dy, 0};
                 strike.sample.height_m = extent.height_m(h);
                 strike.sample.probability = std::min(most, 1.0) * row[h] / all;
-                // By conservation of momentum, (1 + e)^2 m M / (m + M)^2 of m v^2 / 2 goes over to
-                // the mass M that is met there. A hand hardly moves a wardrobe, a hip does.
-                const double M = object.toppling
-                                     ? object.toppling->met_mass_kg(strike.sample.direction,
-                                                                    strike.sample.height_m)
-                                     : object.mass_kg;
-                const double share =
-                    m + M > 0 ? m * M * std::pow((1 + restitution) / (m + M), 2) : 0;
-                strike.sample.W_J = motion.energy_J[level] * share;
+                // A hand hardly moves a wardrobe, a hip does.
+                strike.sample.W_J =
+                    motion.energy_J[level] * taken_share(object, m, strike.sample.direction,
+                                                         strike.sample.height_m, restitution);
                 strike.does_J = instability(object, strike.sample);
                 out.push_back(strike);
             }

@@ -21,6 +21,9 @@ double share_of(double barrier_J, double share) {
 double hand_work_J(const RiskObject& object, const HandLoad& load, double friction) {
     const double weight = object.mass_kg * physics::gravity, rubs = friction * weight;
     const double towards = push_barrier_J(object, load.way);
+    if (load.struck_kg > 0)
+        return load.struck_kg * load.struck_m_s * load.struck_m_s / 2 *
+               taken_share(object, load.struck_kg, load.way, load.height_m, 0);
     if (!std::isfinite(towards) || !(weight > 0)) return 0;
     const double moment = weight * load.half_base_m;
     const double over_edge = over_edge_J(object, load.way);
@@ -40,8 +43,23 @@ double hand_work_J(const RiskObject& object, const HandLoad& load, double fricti
     return most;
 }
 
+double blow_impulse_Ns(const RiskObject& object, const HandLoad& load) {
+    const double met_kg = met_mass_kg(object, load.way, load.height_m);
+    const double both = load.struck_kg + met_kg;
+    return both > 0 ? load.struck_m_s * load.struck_kg * met_kg / both : 0;
+}
+
 double climber_moment_Nm(double mass_kg, double out_m) {
     return mass_kg * physics::gravity * (1.08 * out_m + leans_out_m);
+}
+
+Fall fall_against(double body_height_m, double body_mass_kg, double walking_m_s, double z_m,
+                  double away_m) {
+    const double inertia = body_mass_kg * body_height_m * body_height_m / 3;
+    const double walked = 1.5 * walking_m_s / body_height_m;
+    const double sunk = 1 - z_m / std::hypot(z_m, away_m);
+    const double omega = std::sqrt(walked * walked + 3 * physics::gravity * sunk / body_height_m);
+    return {std::min(body_mass_kg, inertia / (z_m * z_m)), omega * z_m};
 }
 
 }  // namespace topple::safety

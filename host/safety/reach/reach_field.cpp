@@ -6,6 +6,7 @@
 #include <cmath>
 #include <compare>
 #include <map>
+#include <numbers>
 
 #include "core/cell_columns.h"
 #include "core/thread_pool.h"
@@ -35,11 +36,12 @@ struct Met {
 
 // A hold that someone of a kind may take.
 struct Grip {
-    enum class Act : std::uint8_t { pull, lean, climb };
+    enum class Act : std::uint8_t { pull, lean, climb, open, fall };
     std::size_t kind = 0;
     Act act = Act::pull;
     unsigned direction = 0;  // from who takes it
     std::int32_t layer = 0;  // of cells, at which it is taken
+    std::int32_t floor = 0;  // the layer from the bottom of which on heights count, of who falls
     auto operator<=>(const Grip&) const = default;
 };
 using Grips = std::map<Grip, double>;  // how often, per hold
@@ -215,22 +217,41 @@ class Reaching {
             const double share =
                 1 / (static_cast<double>(directions.size()) * directions[m.object]);
             for (const std::uint32_t c : m.cells) out.cells[c] += share;
-            const bool climbs = kind.climbs && climbable(o, at.floor_m);
-            const double each = share / (climbs ? 3 : 2);
-            const auto grip = [&](Grip::Act act, std::int32_t layer) {
-                out.grips[o][{kind_number, act, m.direction, layer}] += each;
-            };
             const SolidCells& cells = solids_.cells;
             const auto [low, high] =
                 std::ranges::minmax(m.cells, {}, [&](std::uint32_t c) { return cells.k[c]; });
-            grip(Grip::Act::pull, cells.k[high]);
-            grip(Grip::Act::lean, std::clamp(solids_.layer_of(at.floor_m + lean_height_m),
-                                             cells.k[low], cells.k[high]));
-            if (climbs) grip(Grip::Act::climb, 0);
+            const bool stands = is_furniture(o, at.floor_m);
+            const std::int32_t shoulder = solids_.layer_of(at.floor_m + kind.shoulder_m);
+            const double opens = stands ? opened(o, m.direction) : 0;
+            const double falls = cells.k[low] <= shoulder ? kind.falls : 0;
+            const std::int32_t leaned = std::clamp(solids_.layer_of(at.floor_m + lean_height_m),
+                                                   cells.k[low], cells.k[high]);
+            using enum Grip::Act;
+            const std::array<std::pair<Grip, double>, 5> acts{{
+                {{kind_number, pull, m.direction, cells.k[high]}, 1},
+                {{kind_number, lean, m.direction, leaned}, 1},
+                {{kind_number, climb, m.direction}, kind.climbs && stands ? 1.0 : 0.0},
+                {{kind_number, open, m.direction}, opens},
+                {{kind_number, fall, m.direction, std::min(cells.k[high], shoulder),
+                  solids_.layer_of(at.floor_m + 1e-9)},
+                 falls},
+            }};
+            double all = 0;
+            for (const auto& [grip, times] : acts) all += times;
+            for (const auto& [grip, times] : acts)
+                if (times > 0) out.grips[o][grip] += share * times / all;
         }
     }
 
-    bool climbable(std::size_t o, double floor_m) const {
+    // Who takes hold of it from that way stands before its drawers: how likely it has any.
+    double opened(std::size_t o, unsigned from) const {
+        const physics::Drawers& drawers = objects_[o].drawers;
+        const auto [dx, dy] = direction(from);
+        const double before = -(dx * drawers.way[0] + dy * drawers.way[1]);
+        return before >= std::numbers::sqrt2 / 2 ? drawers.probability : 0;
+    }
+
+    bool is_furniture(std::size_t o, double floor_m) const {
         const MassSpread& stands = stances_[o];
         return objects_[o].mass_kg >= least_climbed_kg &&
                stands.bottom_m - floor_m <= climbing_step_m &&
@@ -250,23 +271,46 @@ class Reaching {
 
     HandLoad load_of(std::size_t o, const Grip& grip) const {
         const PersonKind& kind = *kinds_[grip.kind];
-        const bool away = grip.act == Grip::Act::lean;
+        const bool away = grip.act == Grip::Act::lean || grip.act == Grip::Act::fall;
+        const physics::Drawers& drawers = objects_[o].drawers;
         auto [dx, dy] = direction(grip.direction);
         if (!away) {
             dx = 0.0 - dx;
             dy = 0.0 - dy;
         }
+        if (grip.act == Grip::Act::open) {
+            dx = drawers.way[0];
+            dy = drawers.way[1];
+        }
         HandLoad out;
         out.way = {dx, dy, 0};
         out.arm_m = kind.arm_m;
         out.half_base_m = half_base(objects_[o], stances_[o], dx, dy);
-        if (grip.act == Grip::Act::climb) {
+        if (grip.act == Grip::Act::climb || grip.act == Grip::Act::open) {
             out.height_m = stances_[o].top_m - stances_[o].bottom_m;
-            const double out_m = std::max(0.0, front_m(o, dx, dy) - out.half_base_m);
-            out.climber_Nm = climber_moment_Nm(kind.mass_kg, out_m);
+            const double front = std::max(0.0, front_m(o, dx, dy) - out.half_base_m);
+            const double drawn = grip.act == Grip::Act::open ? drawers.out_m : 0;
+            if (kind.climbs) {
+                out.weight_N = kind.mass_kg * physics::gravity;
+                out.climber_Nm = climber_moment_Nm(kind.mass_kg, front + drawn);
+            }
+            if (drawn > 0) {
+                const double weight = drawers.mass_share * objects_[o].mass_kg * physics::gravity;
+                if (!kind.climbs) out.weight_N = weight;
+                out.climber_Nm += weight * drawn;
+            }
+            return out;
+        }
+        out.height_m = std::max(0.0, solids_.height_m(grip.layer) - stances_[o].bottom_m);
+        if (grip.act == Grip::Act::fall) {
+            // From the middle of what is in reach.
+            const Fall fall =
+                fall_against(kind.height_m, kind.mass_kg, kind.walking_speed_m_s,
+                             solids_.height_m(grip.layer - grip.floor), kind.arm_m / 2);
+            out.struck_kg = fall.mass_kg;
+            out.struck_m_s = fall.speed_m_s;
         } else {
             out.force_N = away ? kind.push_N : kind.pull_N;
-            out.height_m = std::max(0.0, solids_.height_m(grip.layer) - stances_[o].bottom_m);
         }
         return out;
     }
@@ -287,6 +331,7 @@ class Reaching {
             for (auto [load, probability] : loads) {
                 load.half_base_m = std::max(0.0, load.half_base_m + object.border_shift_m);
                 work.push_back({hand_work_J(object, load, friction), probability, load.way});
+                if (load.struck_kg > 0) work.back().height_m = load.height_m;
             }
             return work;
         };
@@ -297,7 +342,7 @@ class Reaching {
     // By kind and act, in their order.
     std::vector<Hold> told(std::size_t o, std::span<const std::pair<HandLoad, double>> loads,
                            std::span<const WorkSample> work) const {
-        static constexpr std::array acts{"pull", "lean", "climb"};
+        static constexpr std::array acts{"pull", "lean", "climb", "open", "fall"};
         std::vector<Hold> out;
         std::pair<double, double> most;  // what the one that is told of does, and brings
         std::size_t n = 0;
@@ -316,15 +361,16 @@ class Reaching {
             if (does <= most) continue;
             most = does;
             const MassSpread& stands = stances_[o];
-            const double weight = kind.mass_kg * physics::gravity;
-            const double ahead =
-                load.climber_Nm > 0 ? load.half_base_m + load.climber_Nm / weight : 0;
+            const bool hangs = load.weight_N > 0;
+            const double ahead = hangs ? load.half_base_m + load.climber_Nm / load.weight_N : 0;
             out.back().place_m = {stands.center[0] + ahead * load.way[0],
                                   stands.center[1] + ahead * load.way[1],
                                   stands.bottom_m + load.height_m};
-            out.back().force_N = load.climber_Nm > 0 ? Vec3{0, 0, -weight}
-                                                     : Vec3{load.force_N * load.way[0],
-                                                            load.force_N * load.way[1], 0};
+            const auto along = [&](double value) {
+                return Vec3{value * load.way[0], value * load.way[1], 0};
+            };
+            out.back().force_N = hangs ? Vec3{0, 0, -load.weight_N} : along(load.force_N);
+            out.back().impulse_Ns = along(blow_impulse_Ns(objects_[o], load));
         }
         return out;
     }

@@ -44,6 +44,23 @@ TEST(ClosedFurniture, LooksAreThoseOfItsBox) {
     EXPECT_NEAR(looks.backing, 1, 1e-9);
     EXPECT_NEAR(looks.box_side_m2, 2 * (0.8 * 0.4 + 0.8 * 1.2 + 0.4 * 1.2), 1e-9);
     EXPECT_NEAR((BesideWall{0.04, true}.looks().fill), 0.75, 1e-9);
+    EXPECT_NEAR(looks.front[0], 0, 1e-9);
+    EXPECT_NEAR(looks.front[1], 1, 1e-9) << "away from the wall";
+    EXPECT_NEAR(looks.deep_m, 0.4, 1e-9);
+}
+
+TEST(ClosedFurniture, DrawersHoldItsContentsAndComeOutOfItsFront) {
+    const FurnitureLooks looks = BesideWall{0.04}.looks();
+    const ClosedBody body = closed_body(looks, 0.384, 700, 68);
+    // Boards of 18 mm around 0.764 x 0.364 x 1.164 m, but for what sides share.
+    const double inner = 0.384 - looks.box_side_m2 * 0.018;
+    const double share = 68 * inner / (68 * inner + 700 * (0.384 - inner));
+    EXPECT_NEAR(body.contents_share, share, 1e-9);
+    const Drawers drawers = drawers_of(looks, 0.8, body);
+    EXPECT_NEAR(drawers.probability, 0.4, 1e-12);
+    EXPECT_NEAR(drawers.out_m, 0.4 * 2 / 3, 1e-9);
+    EXPECT_EQ(drawers.way, looks.front);
+    EXPECT_EQ(drawers.mass_share, body.contents_share);
 }
 
 // Turned as walls of rooms without right angles are.

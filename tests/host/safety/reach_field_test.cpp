@@ -48,7 +48,11 @@ TEST(HandLoads, UpsetWhatAForceThatGrowsUpsets) {
         const double tip = mass * g * half / height, slide = mu * mass * g;
         if (std::fabs(tip / slide - 1) < 1e-3 || std::fabs(std::min(tip, slide) / force - 1) < 1e-3)
             continue;
-        const HandLoad load{{1, 0, 0}, force, height, 0, half, 0.4};
+        const HandLoad load{.way = {1, 0, 0},
+                            .force_N = force,
+                            .height_m = height,
+                            .half_base_m = half,
+                            .arm_m = 0.4};
         const auto falls = [&](double slide_m) {
             const RiskObject object = standing(mass, 1.5, slide_m);
             return hand_work_J(object, load, mu) >= object.barrier_J;
@@ -72,13 +76,45 @@ TEST(HandLoads, ClimbersAreThoseOfTheRule) {
     }
     const double moment = climber_moment_Nm(27, 0);
     const RiskObject object = standing(20, 1.5, -1);
-    HandLoad load{{1, 0, 0}, 0, 1, moment, 0, 0.4};
+    HandLoad load{.way = {1, 0, 0}, .height_m = 1, .climber_Nm = moment, .arm_m = 0.4};
     for (const double half : {0.5 * moment / 20 / g, 0.999 * moment / 20 / g}) {
         load.half_base_m = half;
         EXPECT_GE(hand_work_J(object, load, 0.3), object.barrier_J);
     }
     load.half_base_m = 1.001 * moment / 20 / g;
     EXPECT_LT(hand_work_J(object, load, 0.3), object.barrier_J);
+}
+
+// A rod on its foot, which falls over by steps of a tenth of a millisecond.
+TEST(HandLoads, WhoTripsFallsAsARodDoes) {
+    Random random(5);
+    for (int n = 0; n < 50; ++n) {
+        const double height = random.uniform(0.8, 1.8), mass = random.uniform(10, 80);
+        const double walking = random.uniform(0.3, 1.5), z = random.uniform(0.3, 0.8) * height;
+        const double away = random.uniform(0.05, 0.4);
+        // What walks on at one speed turns about its foot with the same moment about that.
+        const double inertia = mass * height * height / 3;
+        double omega = mass * walking * height / 2 / inertia, theta = 0;
+        constexpr double step = 1e-4;
+        while (z * std::tan(theta) < away) {
+            omega += step * mass * g * height / 2 * std::sin(theta) / inertia;
+            theta += step * omega;
+        }
+        const Fall fall = fall_against(height, mass, walking, z, away);
+        EXPECT_NEAR(fall.speed_m_s, omega * z, 0.003 * omega * z);
+        EXPECT_DOUBLE_EQ(fall.mass_kg, std::min(mass, inertia / z / z));
+    }
+}
+
+// Both go on together.
+TEST(HandLoads, ABlowKeepsItsMomentum) {
+    const RiskObject object = standing(20, 1.5, -1);
+    HandLoad load{.way = {1, 0, 0}, .height_m = 0.5};
+    load.struck_kg = 30;
+    load.struck_m_s = 2;
+    const double together = 30.0 * 2 / (30 + 20);
+    EXPECT_NEAR(hand_work_J(object, load, 0.3), 20 * together * together / 2, 1e-9);
+    EXPECT_NEAR(blow_impulse_Ns(object, load), 20 * together, 1e-9);
 }
 
 class ReachField : public ::testing::Test {
@@ -112,7 +148,8 @@ TEST_F(ReachField, GetsAtWhatIsLowAndNearEnough) {
     // The same of each kind as often.
     const Disturbance both = reach(room, {"toddlers", "children"});
     EXPECT_NEAR(taken(both, board), taken(children, board) / 2, 1e-12);
-    EXPECT_EQ(both.holds[edge].size(), 4u) << "two kinds pull and lean";
+    EXPECT_EQ(both.holds[edge].size(), 5u)
+        << "two kinds pull and lean; it is above toddlers' shoulders, who fall";
     EXPECT_EQ(both.holds[edge].front().by, "toddlers");
     // It is exposed where it is reached alone.
     const Surroundings s = room.surroundings();
@@ -193,8 +230,50 @@ TEST_F(ReachField, PullsDownWhatIsTopHeavy) {
     EXPECT_LE(pull.fall_chance, pull.chance);
     EXPECT_NEAR(pull.place_m[2], person_kind("children").reach_high_m, 0.03);
     EXPECT_NEAR(std::hypot(pull.force_N[0], pull.force_N[1]), 77, 1e-9);
-    EXPECT_EQ(field.holds[chest].size(), 2u) << "too low to climb";
-    EXPECT_EQ(field.holds[tall].size(), 3u);
+    EXPECT_EQ(field.holds[chest].size(), 3u) << "too low to climb";
+    EXPECT_EQ(field.holds[tall].size(), 4u);
+    const Hold& fall = field.holds[tall].back();
+    EXPECT_EQ(fall.act, "fall");
+    EXPECT_NEAR(fall.place_m[2], person_kind("children").shoulder_m, 0.03);
+    EXPECT_EQ(fall.force_N, (Vec3{}));
+    EXPECT_GT(std::hypot(fall.impulse_Ns[0], fall.impulse_Ns[1]), 1);
+    EXPECT_EQ(pull.impulse_Ns, (Vec3{}));
+}
+
+// A chest with its back to a wall: drawers come out to the front alone.
+TEST_F(ReachField, DrawersArePulledOutFromBeforeThem) {
+    topple::test::Room room(0.025, {-2, -2}, {2, 2});
+    const auto chest = room.box(-0.4, 0.4, -0.2, 0.2, 0, 1, false, 187.5);
+    const auto device = device::open_native(2);
+    topple::test::AssessedRoom scene(*device, room, 0.3);
+    RiskObject& object = scene.at_risk[chest];
+    const PersonKind* const kinds[] = {&person_kind("children"), &person_kind("elderly")};
+    const auto opened = [&](std::string_view by) {
+        const Disturbance field = reach_field(*device, scene.around, scene.at_risk, kinds, 0.3);
+        for (const Hold& hold : field.holds[chest])
+            if (hold.act == "open" && hold.by == by) return hold;
+        return Hold{};
+    };
+    EXPECT_EQ(opened("children").chance, 0) << "it has none";
+    object.drawers = {0.25, {0, 1}, 0.3, 0.5};
+    const Hold likely = opened("children");
+    object.drawers.probability = 0.5;
+    const Hold child = opened("children"), old = opened("elderly");
+    // One of its pull, lean, climb, a tenth of a fall and as many of this as it may have drawers.
+    EXPECT_NEAR(likely.chance / child.chance, 0.25 / 3.35 / (0.5 / 3.6), 1e-9);
+    EXPECT_GT(child.fall_chance, 0);
+    EXPECT_EQ(child.fall_chance, child.chance) << "from nowhere else";
+    EXPECT_EQ(old.fall_chance, 0) << "half of it goes out by as much as half of three quarters";
+    // M = m g (1.08 e + 0.158) of the child, and half of the chest's weight 0.3 m out.
+    const double half = 0.2, weight = 60 * g;
+    const double moment = climber_moment_Nm(27, 0.3) + 0.5 * weight * 0.3;
+    EXPECT_NEAR(child.place_m[1], half + moment / (27 * g), 0.01);
+    EXPECT_NEAR(child.place_m[0], 0, 1e-9);
+    EXPECT_NEAR(child.force_N[2], -27 * g, 1e-9);
+    EXPECT_NEAR(old.place_m[1], half + 0.3, 0.01);
+    EXPECT_NEAR(old.force_N[2], -0.5 * weight, 0.02 * weight);
+    object.drawers.out_m = 0.45;
+    EXPECT_GT(opened("elderly").fall_chance, 0) << "0.5 x 0.45 m is beyond the edge at 0.2 m";
 }
 
 TEST_F(ReachField, TheSameBitsOfAnyThreads) {
