@@ -5,13 +5,14 @@
 
 Takes depth images (`depth`: sensor_msgs/Image, 16UC1 in millimetres or 32FC1 in metres, rectified, its frame_id the optical frame; without
 colours) with their CameraInfo, the camera's place from tf2, and, where a SLAM system tells one, its path (`path`: nav_msgs/Path, each pose with
-its own stamp), which moves the frames of before a loop closure; without it they stay where they were.
+its own stamp), which moves the frames of before a loop closure; without it they stay where they were. With `-p of_points:=true` it takes `points`
+(sensor_msgs/PointCloud2, in a frame of the sensor with z upwards) in place of depth.
 
 Tells, latched: `objects` (visualization_msgs/MarkerArray: a box and its category each), and `things` (std_msgs/String, JSON: a list of {id, the
 same as long as it is the same thing, 0 for the building; change, moved_m: docs/live.md; and of what is there category, action: what is to be
 done, middle_m and size_m: its box, in fixed_frame and along the room's axes}).
 
-Parameters: fixed_frame (map), z upwards; step_m, step_deg (0.1, 10): one of them is how far the camera goes from a frame that is taken to the
+Parameters: of_points (false); fixed_frame (map), z upwards; step_m, step_deg (0.1, 10): one of them is how far the camera goes from a frame that is taken to the
 next; update_s (5): from the end of an update to the next one; voxel_m (0: found); checkpoint (none): a file that is written after each update and
 gone on from at the start, where it is there, in the same map. Frames of before that are not moved by loop closures any more.
 
@@ -28,12 +29,13 @@ import tf2_ros
 from nav_msgs.msg import Path
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
-from sensor_msgs.msg import CameraInfo, Image
+from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
 import topple
 from topple import geometry
+from topple.formats.cloud import message_points
 from topple.formats.frames import pose as pose_of
 
 
@@ -60,15 +62,15 @@ def seconds(stamp):
 class Live(Node):
     def __init__(self):
         super().__init__('topple_live')
-        self.fixed, self.step_m, self.step_deg, self.update_s, voxel_m, self.checkpoint = (
+        self.fixed, self.step_m, self.step_deg, self.update_s, voxel_m, self.checkpoint, self.of_points = (
             self.declare_parameter(name, value).value
-            for name, value in (('fixed_frame', 'map'), ('step_m', 0.1), ('step_deg', 10.0), ('update_s', 5.0), ('voxel_m', 0.0), ('checkpoint', '')))
+            for name, value in (('fixed_frame', 'map'), ('step_m', 0.1), ('step_deg', 10.0), ('update_s', 5.0), ('voxel_m', 0.0), ('checkpoint', ''), ('of_points', False)))
         self.options = {'up': (0, 0, 1), 'voxel_m': voxel_m}
-        self.session = None  # once the camera is known
+        self.session = topple.Session(**self.options) if self.of_points else None  # once the camera is known
         if self.checkpoint and os.path.exists(self.checkpoint):
             self.session = topple.Session.resume(self.checkpoint, **self.options)
             self.get_logger().info(f'going on from {self.checkpoint} with {len(self.session.frames)} frames')
-        self.waiting = collections.deque(maxlen=30)  # images whose place is not known yet
+        self.waiting = collections.deque(maxlen=30)  # images or clouds whose place is not known yet
         self.last = None  # the pose of the frame that was taken last
         self.path = {}  # poses by time, as the SLAM system has them now
         self.hangs = {}  # of each frame: its time, its pose, and the time of a place in the path with the pose from there, or None
@@ -78,8 +80,10 @@ class Live(Node):
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.objects = self.create_publisher(MarkerArray, 'objects', latched)
         self.things = self.create_publisher(String, 'things', latched)
-        self.create_subscription(CameraInfo, 'camera_info', self.take_camera, qos_profile_sensor_data)
-        self.create_subscription(Image, 'depth', self.take_image, qos_profile_sensor_data)
+        self.input = 'points' if self.of_points else 'depth'
+        if not self.of_points:
+            self.create_subscription(CameraInfo, 'camera_info', self.take_camera, qos_profile_sensor_data)
+        self.create_subscription(PointCloud2 if self.of_points else Image, self.input, self.take, qos_profile_sensor_data)
         self.create_subscription(Path, 'path', self.take_path, 1)
         self.create_timer(10.0, self.tell)
 
@@ -92,32 +96,36 @@ class Live(Node):
         if self.session is None:
             self.get_logger().warning('no CameraInfo has come on camera_info')
         elif self.waiting:
-            self.get_logger().warning(f'{len(self.waiting)} images wait for tf from {self.waiting[0].header.frame_id} to {self.fixed}')
+            self.get_logger().warning(f'{len(self.waiting)} messages on {self.input} wait for tf from {self.waiting[0].header.frame_id} to {self.fixed}')
         elif not self.session.frames:
-            self.get_logger().warning('no image has come on depth')
+            self.get_logger().warning(f'nothing has come on {self.input}')
 
-    def take_image(self, image):
-        self.waiting.append(image)
+    def take(self, message):
+        self.waiting.append(message)
         while self.session is not None and self.waiting:
             header = self.waiting[0].header
             try:
                 found = self.buffer.lookup_transform(self.fixed, header.frame_id, rclpy.time.Time.from_msg(header.stamp)).transform
             except tf2_ros.TransformException:
-                return  # not yet: it is asked again with the next image
+                return  # not yet: it is asked again with the next one
             self.take_frame(self.waiting.popleft(), matrix(found.translation, found.rotation))
 
-    def take_frame(self, image, pose):
+    def take_frame(self, message, pose):
         if self.last is not None:
             turn = np.degrees(np.arccos(np.clip((np.trace(self.last[:3, :3].T @ pose[:3, :3]) - 1) / 2, -1, 1)))
             if np.linalg.norm(pose[:3, 3] - self.last[:3, 3]) < self.step_m and turn < self.step_deg:
                 return
         try:
-            frame = self.session.add(metres(image), pose)
+            if self.of_points:
+                points, colours = message_points(message, 'points')
+                frame = self.session.add(points, pose, colours)
+            else:
+                frame = self.session.add(metres(message), pose)
         except (topple.Error, ValueError) as error:
             self.get_logger().warning(f'{error}; it is left out')
             return
         self.last = pose
-        self.hangs[frame] = self.hung(seconds(image.header.stamp), pose)
+        self.hangs[frame] = self.hung(seconds(message.header.stamp), pose)
         self.changed.set()
 
     def hung(self, time, pose):

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -42,6 +43,12 @@ int make_session(const topple_options* options, uint64_t max_frame_bytes, int ke
     });
 }
 
+Mat4 pose_of(const double* sensor_to_world) {
+    Mat4 out;
+    std::copy_n(&needed(sensor_to_world, "sensor_to_world"), out.size(), out.begin());
+    return out;
+}
+
 // update: of a Session; LiveScene, or null.
 template <class Update>
 int give_update(topple_session* session, topple_result** result, uint64_t* things,
@@ -66,6 +73,7 @@ int topple_session_create(const topple_intrinsics* depth, const topple_intrinsic
     const auto made = [&](SessionOptions wanted) {
         std::optional<Intrinsics> seen;
         if (colour) seen = intrinsics_of(*colour);
+        if (!depth && !colour) return Session::of_points(std::move(wanted));
         return Session(intrinsics_of(needed(depth, "depth")), seen, std::move(wanted));
     };
     return make_session(options, max_frame_bytes, keep_gone, session, status, made);
@@ -103,6 +111,25 @@ int topple_session_add(topple_session* session, const topple_frames* frames, uin
                                       view.camera_to_world[n]);
             if (ids) ids[n] = id;
         }
+    });
+}
+
+int topple_session_add_points(topple_session* session, const topple_cloud* points,
+                              const double* sensor_to_world, uint64_t* id, topple_status* status) {
+    return guarded(status, [&] {
+        const FrameId added =
+            needed(session, "session").session->add(view_of(points), pose_of(sensor_to_world));
+        if (id) *id = added;
+    });
+}
+
+int topple_session_label_points(const topple_session* session, const topple_cloud* points,
+                                const double* sensor_to_world, int64_t* things,
+                                topple_status* status) {
+    return guarded(status, [&] {
+        const std::vector<std::int64_t> found =
+            needed(session, "session").session->label(view_of(points), pose_of(sensor_to_world));
+        if (!found.empty()) std::ranges::copy(found, &needed(things, "things"));
     });
 }
 

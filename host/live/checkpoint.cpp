@@ -9,6 +9,7 @@
 #include "io/replace_file.h"
 #include "io/text.h"
 #include "live/coarse_frame.h"
+#include "live/projection.h"
 #include "points/formats/frame_sequence.h"
 #include "points/formats/rigid_pose.h"
 #include "scale/binary_file.h"
@@ -17,7 +18,7 @@ namespace topple::live {
 namespace {
 
 // Changes with what is written below.
-const std::string mark = "topple session 1";
+const std::string mark = "topple session 2";
 
 template <class Io, class Of>
 void intrinsics_fields(Io& io, Of& k) {
@@ -26,18 +27,23 @@ void intrinsics_fields(Io& io, Of& k) {
     for (auto* value : {&k.fx, &k.fy, &k.cx, &k.cy, &k.depth_scale}) io(*value);
 }
 
+// A camera, if there is one.
+template <class Io, class Of, class Fault>
+void camera_fields(Io& io, Of& camera, const Fault& fault) {
+    bool there = camera.has_value();
+    io(there);
+    if (!there) return;
+    if constexpr (!Io::writes) camera.emplace();
+    intrinsics_fields(io, *camera);
+    io.expect(!fault(*camera));
+}
+
 // Lists them for both ways; what is read is checked.
 template <class Io, class Of>
 void fields(Io& io, Of& of) {
-    intrinsics_fields(io, of.depth);
-    io.expect(!io::depth_intrinsics_fault(of.depth));
-    bool coloured = of.colour.has_value();
-    io(coloured);
-    if (coloured) {
-        if constexpr (!Io::writes) of.colour.emplace();
-        intrinsics_fields(io, *of.colour);
-        io.expect(!io::pinhole_fault(*of.colour));
-    }
+    camera_fields(io, of.depth, io::depth_intrinsics_fault);
+    camera_fields(io, of.colour, io::pinhole_fault);
+    io.expect(of.depth || !of.colour);
     io(of.frames.next);
     io(of.frames.last);
     const auto frames_below_next = [&](const auto& map) {
@@ -51,14 +57,16 @@ void fields(Io& io, Of& of) {
             KeptFrame::fields(each, *frame);
             kept.frame = std::move(frame);
         }
-        each.expect(kept.frame->is_of(of.depth.width, of.depth.height));
+        each.expect(of.depth ? kept.frame->is_of(of.depth->width, of.depth->height)
+                             : kept.frame->is_of_points());
         each(kept.pose, rules::finite);
         Mat4 rigid = kept.pose;
         each.expect(!io::make_rigid(rigid));
     });
     frames_below_next(of.frames.kept);
-    const Intrinsics coarse = Coarse(of.depth).intrinsics();
-    KnownThings::fields(io, of.remembered.things, std::size_t{coarse.width} * coarse.height);
+    std::optional<std::size_t> pixels;
+    if (of.depth) pixels = Projection(Coarse(*of.depth).intrinsics()).pixels();
+    KnownThings::fields(io, of.remembered.things, pixels);
     map_fields(io, of.remembered.poses, [](auto& each, auto& pose) { each(pose, rules::finite); });
     frames_below_next(of.remembered.poses);
 }
@@ -66,7 +74,7 @@ void fields(Io& io, Of& of) {
 }  // namespace
 
 template <class Io, class Self>
-void KnownThings::fields(Io& io, Self& known, std::size_t pixels) {
+void KnownThings::fields(Io& io, Self& known, std::optional<std::size_t> spots) {
     io(known.next_);
     list_fields(io, known.before_, [&](auto& each, auto& before) {
         each(before.id);
@@ -79,7 +87,8 @@ void KnownThings::fields(Io& io, Self& known, std::size_t pixels) {
         each(before.category, rules::shown);
     });
     map_fields(io, known.showed_, [&](auto& each, auto& objects) {
-        each(objects, rules::length(pixels), rules::labels(known.before_.size()));
+        each(objects, rules::labels(known.before_.size()));
+        each.expect(!spots || objects.size() == *spots);
     });
 }
 

@@ -32,7 +32,7 @@ struct Remembered {
 
 // What a session is beside its options.
 struct Checkpoint {
-    Intrinsics depth;
+    std::optional<Intrinsics> depth;  // none: its frames are sweeps of points
     std::optional<Intrinsics> colour;
     KeptFrames frames;
     Remembered remembered;

@@ -25,10 +25,8 @@ DepthFrame Coarse::of(const DepthFrame& frame) const {
 
 bool Coarse::leave_out(const Gone& gone, DepthFrame& frame) const {
     bool any = false;
-    constexpr double alike_m = 0.05;
-    constexpr int sure = 2;  // looks: of one, noise and poses may be too far off
     for (const GonePixel& pixel : gone) {
-        if (pixel.through < sure) continue;
+        if (!pixel.is_sure()) continue;
         const std::uint32_t u0 = pixel.u * step_, v0 = pixel.v * step_;
         const std::uint32_t last_u = std::min(u0 + step_, fine_.width - 1),
                             last_v = std::min(v0 + step_, fine_.height - 1);
@@ -36,7 +34,7 @@ bool Coarse::leave_out(const Gone& gone, DepthFrame& frame) const {
             for (std::uint32_t u = u0 - std::min(u0, step_); u <= last_u; ++u) {
                 std::uint16_t& stored = frame.depth[std::size_t{v} * fine_.width + u];
                 if (stored == 0 ||
-                    std::abs(int{stored} - int{pixel.stored}) > alike_m * fine_.depth_scale)
+                    std::abs(int{stored} - int{pixel.stored}) > alike_depth_m * fine_.depth_scale)
                     continue;
                 stored = 0;
                 any = true;

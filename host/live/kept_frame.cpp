@@ -3,6 +3,7 @@
 
 #include <libdeflate.h>
 
+#include <bit>
 #include <memory>
 #include <new>
 
@@ -25,6 +26,24 @@ void to_values(std::vector<Value>& differences, std::size_t row, std::size_t ste
         for (std::size_t n = step; n < row; ++n)
             differences[first + n] =
                 static_cast<Value>(differences[first + n] + differences[first + n - step]);
+}
+
+// The lowest bytes of all values, then the next ones: those high up are mostly alike.
+template <class Value>
+std::vector<std::uint8_t> planes_of(const std::vector<Value>& values) {
+    std::vector<std::uint8_t> out(sizeof(Value) * values.size());
+    for (std::size_t byte = 0; byte < sizeof(Value); ++byte)
+        for (std::size_t n = 0; n < values.size(); ++n)
+            out[byte * values.size() + n] = static_cast<std::uint8_t>(values[n] >> 8 * byte);
+    return out;
+}
+template <class Value>
+std::vector<Value> values_of(const std::vector<std::uint8_t>& planes) {
+    std::vector<Value> out(planes.size() / sizeof(Value), 0);
+    for (std::size_t byte = 0; byte < sizeof(Value); ++byte)
+        for (std::size_t n = 0; n < out.size(); ++n)
+            out[n] = static_cast<Value>(out[n] | Value{planes[byte * out.size() + n]} << 8 * byte);
+    return out;
 }
 
 }  // namespace
@@ -57,13 +76,7 @@ std::vector<std::uint8_t> Packed::unpacked() const {
 KeptFrame::KeptFrame(const DepthFrame& frame, std::uint32_t width) : width_(width) {
     std::vector<std::uint16_t> depth = frame.depth;
     to_differences(depth, width, 1);
-    // Lower bytes, then upper ones, most of which are 0 or 255.
-    std::vector<std::uint8_t> bytes(2 * depth.size());
-    for (std::size_t n = 0; n < depth.size(); ++n) {
-        bytes[n] = static_cast<std::uint8_t>(depth[n] & 0xFF);
-        bytes[depth.size() + n] = static_cast<std::uint8_t>(depth[n] >> 8);
-    }
-    depth_ = Packed(bytes);
+    depth_ = Packed(planes_of(depth));
     std::vector<std::uint8_t> colour = frame.rgb;
     to_differences(colour, std::size_t{3} * width, 3);
     colour_ = Packed(colour);
@@ -71,10 +84,7 @@ KeptFrame::KeptFrame(const DepthFrame& frame, std::uint32_t width) : width_(widt
 
 DepthFrame KeptFrame::depth_frame() const {
     DepthFrame out;
-    const std::vector<std::uint8_t> bytes = depth_.unpacked();
-    out.depth.resize(bytes.size() / 2);
-    for (std::size_t n = 0; n < out.depth.size(); ++n)
-        out.depth[n] = static_cast<std::uint16_t>(bytes[n] | bytes[out.depth.size() + n] << 8);
+    out.depth = values_of<std::uint16_t>(depth_.unpacked());
     to_values(out.depth, width_, 1);
     return out;
 }
@@ -83,6 +93,42 @@ DepthFrame KeptFrame::frame() const {
     DepthFrame out = depth_frame();
     out.rgb = colour_.unpacked();
     to_values(out.rgb, std::size_t{3} * width_, 3);
+    return out;
+}
+
+KeptFrame::KeptFrame(const PointCloud& points) {
+    const std::size_t count = points.size();
+    std::vector<std::uint32_t> places;
+    for (const std::vector<float>* axis : {&points.x, &points.y, &points.z})
+        for (const float value : *axis) places.push_back(std::bit_cast<std::uint32_t>(value));
+    to_differences(places, count, 1);
+    places_ = Packed(planes_of(places));
+    if (points.red.empty()) return;
+    std::vector<std::uint8_t> colour;
+    for (const std::vector<std::uint8_t>* channel : {&points.red, &points.green, &points.blue})
+        colour.insert(colour.end(), channel->begin(), channel->end());
+    to_differences(colour, count, 1);
+    colour_ = Packed(colour);
+}
+
+PointCloud KeptFrame::points() const {
+    std::vector<std::uint32_t> places = values_of<std::uint32_t>(places_.unpacked());
+    PointCloud out;
+    const std::size_t count = places.size() / 3;
+    if (count == 0) return out;
+    to_values(places, count, 1);
+    std::size_t n = 0;
+    for (std::vector<float>* axis : {&out.x, &out.y, &out.z})
+        for (axis->reserve(count); axis->size() < count; ++n)
+            axis->push_back(std::bit_cast<float>(places[n]));
+    std::vector<std::uint8_t> colour = colour_.unpacked();
+    if (colour.empty()) return out;
+    to_values(colour, count, 1);
+    auto next = colour.begin();
+    for (std::vector<std::uint8_t>* channel : {&out.red, &out.green, &out.blue}) {
+        channel->assign(next, next + static_cast<std::ptrdiff_t>(count));
+        next += static_cast<std::ptrdiff_t>(count);
+    }
     return out;
 }
 

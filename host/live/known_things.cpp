@@ -46,7 +46,8 @@ std::vector<Match> by_pixels(const Showed& before, const ShownObjects& now) {
     std::map<std::int32_t, double> of_before, of_now;
     for (const auto& [frame, shows] : now) {
         const auto earlier = before.find(frame);
-        if (earlier == before.end()) continue;
+        // A file may say anything.
+        if (earlier == before.end() || earlier->second.size() != shows.object.size()) continue;
         for (std::size_t n = 0; n < shows.object.size(); ++n) {
             const std::int32_t a = earlier->second[n], b = shows.object[n];
             if (a >= 0) ++of_before[a];
@@ -71,7 +72,7 @@ std::vector<double> shares(std::size_t objects, const Showed& showed, const Show
     std::vector<double> all(objects), some(objects);
     for (const auto& [frame, pixels] : shown) {
         const auto of = showed.find(frame);
-        if (of == showed.end() || (pixels.*flag).empty()) continue;
+        if (of == showed.end() || (pixels.*flag).size() != of->second.size()) continue;
         for (std::size_t n = 0; n < of->second.size(); ++n) {
             const std::int32_t o = of->second[n];
             if (o < 0) continue;

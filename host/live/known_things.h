@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,9 @@
 
 namespace topple::live {
 
-// What the pixels of a frame show of a scene: its objects, -1: none; whether later frames see
-// through what is there, so that it has gone since; and whether frames of before saw through it, so
-// that it has come.
+// What spots of a frame, its pixels or some of its points, show of a scene: its objects, -1: none;
+// whether later frames see through what is there, so that it has gone since; and whether frames of
+// before saw through it, so that it has come.
 struct Shown {
     std::vector<std::int32_t> object;
     std::vector<bool> gone, came;
@@ -29,9 +30,9 @@ class KnownThings {
   public:
     // What the objects are, and what of those before has vanished.
     std::vector<Thing> name(const Scene& scene, const ShownObjects& shown);
-    // For both ways (core/fields.h). pixels: of a frame.
+    // For both ways (core/fields.h). spots: of each frame, where all have as many.
     template <class Io, class Self>
-    static void fields(Io& io, Self& known, std::size_t pixels);
+    static void fields(Io& io, Self& known, std::optional<std::size_t> spots);
 
   private:
     struct Before {

@@ -40,84 +40,64 @@ struct Looks::Camera {
         return {m[0] * x + m[4] * y + m[8] * z, m[1] * x + m[5] * y + m[9] * z,
                 m[2] * x + m[6] * y + m[10] * z};
     }
-    bool looks_like(const Camera& other) const {
+    // All that is around is seen whichever way a sensor is turned.
+    bool looks_like(const Camera& other, bool around) const {
         const double cosine = m[2] * other.m[2] + m[6] * other.m[6] + m[10] * other.m[10];
         const double moved = std::hypot(m[3] - other.m[3], m[7] - other.m[7], m[11] - other.m[11]);
-        return cosine >= most_turned_cosine && moved <= most_moved_m;
+        return (around || cosine >= most_turned_cosine) && moved <= most_moved_m;
     }
-    // Where a pixel's reading lies, z metres away.
-    std::array<float, 3> place(const Intrinsics& k, std::size_t u, std::size_t v, double z) const {
-        return world(static_cast<float>(z * (static_cast<double>(u) - k.cx) / k.fx),
-                     static_cast<float>(z * (static_cast<double>(v) - k.cy) / k.fy),
-                     static_cast<float>(z));
+    // Where a pixel's reading lies.
+    std::array<float, 3> place(const Projection& by, std::size_t u, std::size_t v, double z) const {
+        const auto [x, y, ahead] = by.place(u, v, z);
+        return world(x, y, ahead);
     }
     std::array<float, 12> m{};
 };
 
 namespace {
 
-std::vector<std::uint16_t> nearest_around(const Intrinsics& k, const DepthFrame& frame) {
-    const std::size_t width = k.width, height = k.height;
-    std::vector<std::uint16_t> out(frame.depth.size(), 0);
-    for (std::size_t v = 1; v + 1 < height; ++v)
-        for (std::size_t u = 1; u + 1 < width; ++u) {
-            std::uint16_t least = 65535;
-            for (std::size_t row = v - 1; row <= v + 1; ++row)
-                for (std::size_t column = u - 1; column <= u + 1; ++column)
-                    least = std::min(least, frame.depth[row * width + column]);
-            out[v * width + u] = least;
-        }
-    return out;
-}
-
 enum class Look : std::uint8_t { none, same, through };
 
-// What a frame says of a place, in its camera's axes.
-Look look_at(const Intrinsics& k, const std::vector<std::uint16_t>& nearest,
+// What a frame says of a place, in its sensor's axes.
+Look look_at(const Projection& by, const std::vector<std::uint16_t>& nearest,
              const std::array<float, 3>& place) {
-    const auto [x, y, z] = place;
-    if (!(z > 0)) return Look::none;
-    const auto u =
-        static_cast<int>(std::lround(x / z * static_cast<float>(k.fx) + static_cast<float>(k.cx)));
-    const auto v =
-        static_cast<int>(std::lround(y / z * static_cast<float>(k.fy) + static_cast<float>(k.cy)));
-    if (u < 0 || v < 0 || u >= static_cast<int>(k.width) || v >= static_cast<int>(k.height))
-        return Look::none;
-    const std::uint16_t stored =
-        nearest[static_cast<std::size_t>(v) * k.width + static_cast<std::size_t>(u)];
+    const auto seen = by.see(place);
+    if (!seen) return Look::none;
+    const std::uint16_t stored = nearest[seen->pixel];
     if (stored == 0) return Look::none;
-    const float reading = static_cast<float>(stored / k.depth_scale);
+    const float reading = static_cast<float>(stored / by.depth_scale());
     const float margin = sure * depth_sigma(reading) + pose_error_m;
-    if (reading > z + margin) return Look::through;
-    return reading < z - margin ? Look::none : Look::same;
+    if (reading > seen->depth_m + margin) return Look::through;
+    return reading < seen->depth_m - margin ? Look::none : Look::same;
 }
 
 }  // namespace
 
-Looks::Looks(const Intrinsics& intrinsics, std::span<const DepthFrame> frames, ThreadPool& threads,
+Looks::Looks(const Projection& projection, std::span<const DepthFrame> frames, ThreadPool& threads,
              std::vector<std::optional<Mat4>> earlier)
-    : intrinsics_(intrinsics),
+    : projection_(projection),
       frames_(frames),
       threads_(threads),
       earlier_(std::move(earlier)),
       nearest_(frames.size()) {
     earlier_.resize(frames_.size());
-    threads_.each(frames_.size(), 1,
-                  [&](std::size_t n) { nearest_[n] = nearest_around(intrinsics_, frames_[n]); });
+    threads_.each(frames_.size(), 1, [&](std::size_t n) {
+        nearest_[n] = projection_.nearest_around(frames_[n].depth);
+    });
 }
 
 // Of a frame's readings, sampled, those whose place another one does not hide, with these poses.
 Looks::Shared Looks::shared(std::size_t frame, const Camera& camera, std::size_t other,
                             const Camera& from) const {
     constexpr std::uint32_t step = 4;
-    const Intrinsics& k = intrinsics_;
+    const Projection& by = projection_;
     Shared out;
-    for (std::uint32_t v = 0; v < k.height; v += step) {
-        for (std::uint32_t u = 0; u < k.width; u += step) {
-            const std::uint16_t stored = frames_[frame].depth[std::size_t{v} * k.width + u];
+    for (std::uint32_t v = 0; v < by.height(); v += step) {
+        for (std::uint32_t u = 0; u < by.width(); u += step) {
+            const std::uint16_t stored = frames_[frame].depth[std::size_t{v} * by.width() + u];
             if (stored == 0) continue;
-            const Look look = look_at(k, nearest_[other],
-                                      from.seen(camera.place(k, u, v, stored / k.depth_scale)));
+            const Look look = look_at(by, nearest_[other],
+                                      from.seen(camera.place(by, u, v, stored / by.depth_scale())));
             if (look == Look::none) continue;
             out.through += look == Look::through;
             ++out.seen;
@@ -138,7 +118,7 @@ bool Looks::fit(std::size_t frame, std::size_t other) const {
 }
 
 std::vector<Gone> Looks::seen_through(const Asked& asked) const {
-    const Intrinsics& k = intrinsics_;
+    const Projection& by = projection_;
     std::vector<Camera> cameras;
     for (const DepthFrame& frame : frames_) cameras.emplace_back(frame.camera_to_world);
     struct Tally {
@@ -161,16 +141,17 @@ std::vector<Gone> Looks::seen_through(const Asked& asked) const {
         const auto [first, last] = asked(n);
         std::vector<Other> others;
         for (std::size_t other = last; other-- > first && others.size() < most_asked;)
-            if (cameras[n].looks_like(cameras[other])) others.push_back({other, fit(n, other)});
-        for (std::uint32_t v = 0; v < k.height; ++v) {
-            for (std::uint32_t u = 0; u < k.width; ++u) {
-                const std::uint16_t stored = frames_[n].depth[std::size_t{v} * k.width + u];
+            if (cameras[n].looks_like(cameras[other], by.is_around()))
+                others.push_back({other, fit(n, other)});
+        for (std::uint32_t v = 0; v < by.height(); ++v) {
+            for (std::uint32_t u = 0; u < by.width(); ++u) {
+                const std::uint16_t stored = frames_[n].depth[std::size_t{v} * by.width() + u];
                 if (stored == 0) continue;
-                const auto place = cameras[n].place(k, u, v, stored / k.depth_scale);
+                const auto place = cameras[n].place(by, u, v, stored / by.depth_scale());
                 Tally all, fitting;
                 for (const Other& other : others) {
                     const Look look =
-                        look_at(k, nearest_[other.frame], cameras[other.frame].seen(place));
+                        look_at(by, nearest_[other.frame], cameras[other.frame].seen(place));
                     if (look == Look::none) continue;
                     all.add(look);
                     if (other.fits) fitting.add(look);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/thread_pool.h"
+#include "live/projection.h"
 #include "topple/input.h"
 
 namespace topple::live {
@@ -20,17 +21,22 @@ struct GonePixel {
     std::uint32_t u, v;
     std::uint16_t stored;
     std::uint8_t through, through_of_fitting;
+    // Of one look, noise and poses may be too far off.
+    bool is_sure() const { return through >= 2; }
 };
+// What is left out with it lies around it, and is about as far away.
+inline constexpr double alike_depth_m = 0.05;
 using Gone = std::vector<GonePixel>;
 
 // Which others are asked about a frame: [first, last) of those given, the last ones first.
 using Asked = std::function<std::pair<std::size_t, std::size_t>(std::size_t frame)>;
 
-// Depth frames that are asked about one another; all must stay.
+// Images by one projection that are asked about one another; all must stay.
 class Looks {
   public:
-    // earlier: the frames' poses at an earlier time, of those that were there; none: of no frame.
-    Looks(const Intrinsics& intrinsics, std::span<const DepthFrame> frames, ThreadPool& threads,
+    // frames: their depths, by the projection, and poses, sensor to world. earlier: the frames'
+    // poses at an earlier time, of those that were there; none: of no frame.
+    Looks(const Projection& projection, std::span<const DepthFrame> frames, ThreadPool& threads,
           std::vector<std::optional<Mat4>> earlier = {});
     // Of each frame the pixels that show places which those asked see through: of later ones, what
     // was there has gone since; of earlier ones, it has come. It takes most of the first three
@@ -47,7 +53,7 @@ class Looks {
                   const Camera& from) const;
     bool fit(std::size_t frame, std::size_t other) const;
 
-    Intrinsics intrinsics_;
+    Projection projection_;
     std::span<const DepthFrame> frames_;
     ThreadPool& threads_;
     std::vector<std::optional<Mat4>> earlier_;

@@ -16,9 +16,10 @@
 #include "core/random.h"
 #include "device/cancelling.h"
 #include "live/checkpoint.h"
-#include "live/coarse_frame.h"
+#include "live/scan_kind.h"
 #include "live/seen_through.h"
 #include "points/caller_frames.h"
+#include "points/caller_points.h"
 #include "points/formats/rigid_pose.h"
 #include "topple/error.h"
 #include "topple/frame_labels.h"
@@ -71,7 +72,8 @@ double apart(const Mat4& a, const Mat4& b) {
 class Session::State {
   public:
     State(live::Checkpoint from, SessionOptions options)
-        : k_(from.depth),
+        : kind_(live::scan_kind(from)),
+          depth_(from.depth),
           colour_(from.colour),
           options_(std::move(options)),
           frames_(std::move(from.frames)),
@@ -94,25 +96,28 @@ class Session::State {
     }
 
     FrameId add(const FrameView& view, const Mat4& pose) {
-        FrameId& next = frames_.next;  // of the producer alone, as is `last`
-        const FramesView given = one_frame(k_, colour_, view, pose, name_of(next));
+        const FrameId next = frames_.next;  // of the producer alone, as is `last`
+        const FramesView given = one_frame(camera(), colour_, view, pose, name_of(next));
         // As parse() takes it: checked, its colours as the depth camera sees them.
         const DepthFrame frame = CallerFrames(given).load_coloured(0);
         if (std::ranges::all_of(frame.depth, [](std::uint16_t d) { return d == 0; }))
             throw Error(ErrorKind::input, name_of(next) + ": it has no readings");
         Checksum sum;
         sum.add(frame.depth.data(), frame.depth.size() * sizeof(std::uint16_t));
-        sum.add(frame.camera_to_world.data(), sizeof(frame.camera_to_world));
-        if (sum.value() == frames_.last)
-            throw Error(ErrorKind::input, name_of(next) + ": it is the frame before once more");
-        auto kept = std::make_shared<const live::KeptFrame>(frame, k_.width);
-        const std::lock_guard lock(frames_mutex_);
-        frames_.last = sum.value();
-        bytes_ += kept->bytes();
-        frames_.kept[next] = {std::move(kept), pose};
-        ++changes_;
-        keep_to_limit();
-        return next++;
+        return keep(sum, frame.camera_to_world, pose,
+                    [&] { return std::make_shared<const live::KeptFrame>(frame, depth_->width); });
+    }
+    FrameId add(const CloudView& view, const Mat4& sensor_to_world) {
+        if (depth_)
+            throw Error(ErrorKind::usage,
+                        "session: it is of depth frames; begin one of points (Session::of_points)");
+        const PointCloud points = points_of(view, name_of(frames_.next));
+        const Mat4 pose = rigid(sensor_to_world, name_of(frames_.next) + ": sensor_to_world");
+        Checksum sum;
+        for (const std::vector<float>* axis : {&points.x, &points.y, &points.z})
+            sum.add(axis->data(), axis->size() * sizeof(float));
+        return keep(sum, pose, pose,
+                    [&] { return std::make_shared<const live::KeptFrame>(points); });
     }
     void correct(const std::map<FrameId, Mat4>& poses) {
         for (auto [frame, pose] : poses) {
@@ -134,7 +139,7 @@ class Session::State {
         if (kept == frames_.kept.end()) no_such(frame);
         drop(kept);
     }
-    const Intrinsics& intrinsics() const { return k_; }
+    const std::optional<Intrinsics>& intrinsics() const { return depth_; }
     std::vector<FrameId> frames() const {
         const std::lock_guard lock(frames_mutex_);
         std::vector<FrameId> out;
@@ -165,7 +170,8 @@ class Session::State {
         const std::lock_guard one_at_a_time(update_mutex_);
         wait_behind({});
         find();
-        if (!of_all_) of_all_ = parsed(parsed_, nullptr);
+        bool left_out = false;
+        if (!of_all_) of_all_ = parsed(parsed_, {}, left_out);
         return of_all_;
     }
     void cancel() {
@@ -178,7 +184,7 @@ class Session::State {
     ~State() { cancel(); }
     live::Checkpoint checkpoint() const {
         // First what is remembered: frames may be newer than an update, but never older.
-        live::Checkpoint out{k_, colour_, {}, remembered()};
+        live::Checkpoint out{depth_, colour_, {}, remembered()};
         const std::lock_guard lock(frames_mutex_);
         out.frames = frames_;
         return out;
@@ -188,27 +194,80 @@ class Session::State {
         return scene_;
     }
     ThingLabels label(const FrameView& view, const Mat4& pose) const {
-        std::shared_ptr<const LiveScene> scene;
-        std::shared_ptr<const FrameLabeller> labeller;
-        {
-            const std::lock_guard lock(scene_mutex_);
-            scene = scene_;
-            labeller = labeller_;
-        }
-        if (!scene) throw Error(ErrorKind::usage, "session: nothing is known before update()");
+        const Known known = this->known();
         const FrameLabels found =
-            labeller->label(one_frame(k_, colour_, view, pose, "frame"), 0, threads_);
-        ThingLabels out{found.width, found.height, {}};
-        out.thing.reserve(found.object.size());
-        for (const std::int32_t o : found.object)
-            out.thing.push_back(
-                o < 0 ? -1
-                      : static_cast<std::int64_t>(scene->things[static_cast<std::size_t>(o)].id));
-        return out;
+            known.labeller->label(one_frame(camera(), colour_, view, pose, "frame"), 0, threads_);
+        return {found.width, found.height, things_of(found.object, *known.scene)};
+    }
+    std::vector<std::int64_t> label(const CloudView& points, const Mat4& sensor_to_world) const {
+        const Known known = this->known();
+        const Mat4 pose = rigid(sensor_to_world, "points: sensor_to_world");
+        return things_of(known.labeller->label(points, pose, threads_).object, *known.scene);
     }
 
   private:
-    using Frames = std::map<FrameId, live::PosedFrame>;
+    using Frames = live::Frames;
+
+    struct Known {
+        std::shared_ptr<const LiveScene> scene;
+        std::shared_ptr<const FrameLabeller> labeller;
+    };
+    Known known() const {
+        const std::lock_guard lock(scene_mutex_);
+        if (!scene_) throw Error(ErrorKind::usage, "session: nothing is known before update()");
+        return {scene_, labeller_};
+    }
+    static std::vector<std::int64_t> things_of(const std::vector<std::int32_t>& objects,
+                                               const LiveScene& scene) {
+        std::vector<std::int64_t> out;
+        out.reserve(objects.size());
+        for (const std::int32_t o : objects)
+            out.push_back(
+                o < 0 ? -1
+                      : static_cast<std::int64_t>(scene.things[static_cast<std::size_t>(o)].id));
+        return out;
+    }
+    const Intrinsics& camera() const {
+        if (depth_) return *depth_;
+        throw Error(ErrorKind::usage,
+                    "session: it is of points; begin one with intrinsics for depth frames");
+    }
+    static Mat4 rigid(Mat4 pose, const std::string& what) {
+        if (const auto fault = io::make_rigid(pose))
+            throw Error(ErrorKind::input, what + ": " + *fault);
+        return pose;
+    }
+    // The finite ones, copied.
+    static PointCloud points_of(CloudView view, std::string source) {
+        view.source = std::move(source);
+        if (view.size() == 0) throw Error(ErrorKind::input, view.source + ": it has no points");
+        view.nx = view.ny = view.nz = {};
+        if (auto finite = finite_points(view)) return std::move(finite->cloud);
+        PointCloud out;
+        out.x.assign(view.x.begin(), view.x.end());
+        out.y.assign(view.y.begin(), view.y.end());
+        out.z.assign(view.z.begin(), view.z.end());
+        out.red.assign(view.red.begin(), view.red.end());
+        out.green.assign(view.green.begin(), view.green.end());
+        out.blue.assign(view.blue.begin(), view.blue.end());
+        return out;
+    }
+    // Unless it is the frame before once more. sum: of its readings. rigid, given: its pose.
+    template <class Make>
+    FrameId keep(Checksum& sum, const Mat4& rigid, const Mat4& given, const Make& kept_frame) {
+        sum.add(rigid.data(), sizeof(rigid));
+        if (sum.value() == frames_.last)
+            throw Error(ErrorKind::input,
+                        name_of(frames_.next) + ": it is the frame before once more");
+        std::shared_ptr<const live::KeptFrame> kept = kept_frame();
+        const std::lock_guard lock(frames_mutex_);
+        frames_.last = sum.value();
+        bytes_ += kept->bytes();
+        frames_.kept[frames_.next] = {std::move(kept), given};
+        ++changes_;
+        keep_to_limit();
+        return frames_.next++;
+    }
 
     [[noreturn]] static void no_such(FrameId frame) {
         throw Error(ErrorKind::usage, "session: there is no " + name_of(frame));
@@ -259,9 +318,8 @@ class Session::State {
         for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
         found->number = ++parses_;
         bool left_out = false;
-        found->result = parsed(frames, [&](std::size_t n, DepthFrame& frame) {
-            if (options_.forget_gone) left_out |= coarse_.leave_out(passed.gone[n], frame);
-        });
+        const std::span<const live::Gone> gone(passed.gone);
+        found->result = parsed(frames, options_.forget_gone ? gone : gone.first(0), left_out);
         auto labeller = std::make_shared<const FrameLabeller>(*found->result);
         found->things =
             remembered.things.name(found->result->scene, shown(frames, passed, *labeller));
@@ -276,23 +334,11 @@ class Session::State {
         labeller_ = std::move(labeller);
         remembered_ = std::move(remembered);
     }
-    std::shared_ptr<const ParseResult> parsed(
-        const Frames& frames, const std::function<void(std::size_t, DepthFrame&)>& leave_out) {
-        FramesView view;
-        view.intrinsics = k_;
-        view.source = options_.source;
-        std::vector<const live::KeptFrame*> images;
-        for (const auto& [frame, kept] : frames) {
-            view.camera_to_world.push_back(kept.pose);
-            images.push_back(kept.frame.get());
-        }
-        DepthFrame current;
-        view.image = [&](std::size_t n) {
-            current = images[n]->frame();
-            if (leave_out) leave_out(n, current);
-            return view_of(current, k_);
-        };
-        return std::make_shared<const ParseResult>(parse(view, options_.parse));
+    std::shared_ptr<const ParseResult> parsed(const Frames& frames,
+                                              std::span<const live::Gone> gone,
+                                              bool& left_out) const {
+        return std::make_shared<const ParseResult>(
+            kind_->parse(frames, gone, options_.source, options_.parse, left_out));
     }
     // The scene that is there; from the second time on without what changed.
     std::shared_ptr<const LiveScene> told() {
@@ -339,10 +385,9 @@ class Session::State {
             old += frame < first_new;
             const auto parsed = poses.find(frame);
             earlier.push_back(parsed == poses.end() ? std::nullopt : std::optional(parsed->second));
-            out.seen.push_back(coarse_.of(kept.frame->depth_frame()));
-            out.seen.back().camera_to_world = kept.pose;
+            out.seen.push_back(kind_->image(kept));
         }
-        const live::Looks looks(coarse_.intrinsics(), out.seen, options_.parse.device->threads(),
+        const live::Looks looks(kind_->projection(), out.seen, options_.parse.device->threads(),
                                 std::move(earlier));
         const std::size_t all = out.seen.size();
         out.gone = looks.seen_through([&](std::size_t n) { return std::pair(n + 1, all); });
@@ -359,28 +404,28 @@ class Session::State {
                 frames, [&](const auto& kept) { return number_of(kept.first) % every == 0; }));
         };
         while (telling() > most_telling) every *= 2;
-        const Intrinsics& k = coarse_.intrinsics();
-        const auto flags = [&](const live::Gone& pixels) {
-            std::vector<bool> out(std::size_t{k.width} * k.height);
+        const live::Projection& by = kind_->projection();
+        const auto flags = [&](const live::Gone& pixels, const std::vector<std::uint32_t>& spots) {
+            std::vector<bool> flagged(by.pixels()), out;
             for (const live::GonePixel& p : pixels)
-                out[std::size_t{p.v} * k.width + p.u] = p.through_of_fitting > 0;
+                flagged[std::size_t{p.v} * by.width() + p.u] = p.through_of_fitting > 0;
+            for (const std::uint32_t pixel : spots) out.push_back(flagged[pixel]);
             return out;
         };
         live::ShownObjects out;
         std::size_t n = 0;
         for (auto at = frames.begin(); at != frames.end(); ++at, ++n) {
             if (number_of(at->first) % every != 0) continue;
-            const FramesView view =
-                one_frame(k, std::nullopt, view_of(passed.seen[n], k), at->second.pose, {});
-            out[at->first] = {labeller.label(view, 0, threads_).object, flags(passed.gone[n]),
-                              flags(passed.came[n])};
+            live::ScanKind::Spots spots =
+                kind_->spots(at->second, passed.seen[n], labeller, threads_);
+            out[at->first] = {std::move(spots.object), flags(passed.gone[n], spots.pixel),
+                              flags(passed.came[n], spots.pixel)};
         }
         return out;
     }
 
-    const Intrinsics k_;
-    const live::Coarse coarse_{k_};
-    const std::optional<Intrinsics> colour_;
+    const std::unique_ptr<const live::ScanKind> kind_;
+    const std::optional<Intrinsics> depth_, colour_;  // none: of points
     SessionOptions options_;
     unsigned threads_ = 0;
 
@@ -408,6 +453,9 @@ Session::Session(const Intrinsics& intrinsics, const std::optional<Intrinsics>& 
                  SessionOptions options)
     : state_(std::make_unique<State>(live::Checkpoint{intrinsics, colour_intrinsics, {}, {}},
                                      std::move(options))) {}
+Session Session::of_points(SessionOptions options) {
+    return Session(std::make_unique<State>(live::Checkpoint{}, std::move(options)));
+}
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Session Session::resume(const std::filesystem::path& file, SessionOptions options) {
     return Session(std::make_unique<State>(live::Checkpoint::read(file), std::move(options)));
@@ -419,13 +467,16 @@ Session& Session::operator=(Session&&) noexcept = default;
 FrameId Session::add(const FrameView& frame, const Mat4& camera_to_world) {
     return state_->add(frame, camera_to_world);
 }
+FrameId Session::add(const CloudView& points, const Mat4& sensor_to_world) {
+    return state_->add(points, sensor_to_world);
+}
 void Session::correct(const std::map<FrameId, Mat4>& camera_to_world) {
     state_->correct(camera_to_world);
 }
 void Session::forget(FrameId frame) {
     state_->forget(frame);
 }
-const Intrinsics& Session::intrinsics() const {
+const std::optional<Intrinsics>& Session::intrinsics() const {
     return state_->intrinsics();
 }
 std::vector<FrameId> Session::frames() const {
@@ -454,6 +505,11 @@ std::shared_ptr<const LiveScene> Session::scene() const {
 }
 ThingLabels Session::label(const FrameView& frame, const Mat4& camera_to_world) const {
     return state_->label(frame, camera_to_world);
+}
+
+std::vector<std::int64_t> Session::label(const CloudView& points,
+                                         const Mat4& sensor_to_world) const {
+    return state_->label(points, sensor_to_world);
 }
 
 }  // namespace topple

@@ -63,28 +63,6 @@ void check_viewpoint(const CloudView& view) {
     }
 }
 
-void check_arrays(const CloudView& view) {
-    check_columns<float>(view, {{"x", &view.x}, {"y", &view.y}, {"z", &view.z}});
-    check_columns<float>(view, {{"nx", &view.nx}, {"ny", &view.ny}, {"nz", &view.nz}});
-    check_columns<float>(view, {{"viewpoint_x", &view.viewpoint_x},
-                                {"viewpoint_y", &view.viewpoint_y},
-                                {"viewpoint_z", &view.viewpoint_z}});
-    if (!view.viewpoint_x.empty() && view.height > 1) {
-        refuse(
-            view,
-            "it is organised, of one image, but has a viewpoint for each point; leave out either "
-            "width and height or viewpoint_x, viewpoint_y and viewpoint_z");
-    }
-    check_columns<std::uint8_t>(view,
-                                {{"red", &view.red}, {"green", &view.green}, {"blue", &view.blue}});
-    if (!view.pixel.empty() && view.pixel.size() != view.size()) {
-        refuse(view, "pixel has " + std::to_string(view.pixel.size()) + " values, but x has " +
-                         std::to_string(view.size()));
-    }
-    check_image(view);
-    check_viewpoint(view);
-}
-
 bool finite(const FloatColumn& a, const FloatColumn& b, const FloatColumn& c, std::size_t i) {
     return std::isfinite(a[i]) && std::isfinite(b[i]) && std::isfinite(c[i]);
 }
@@ -108,8 +86,30 @@ bool all_finite(const CloudView& view) {
 
 }  // namespace
 
+void check_points(const CloudView& view) {
+    check_columns<float>(view, {{"x", &view.x}, {"y", &view.y}, {"z", &view.z}});
+    check_columns<float>(view, {{"nx", &view.nx}, {"ny", &view.ny}, {"nz", &view.nz}});
+    check_columns<float>(view, {{"viewpoint_x", &view.viewpoint_x},
+                                {"viewpoint_y", &view.viewpoint_y},
+                                {"viewpoint_z", &view.viewpoint_z}});
+    if (!view.viewpoint_x.empty() && view.height > 1) {
+        refuse(
+            view,
+            "it is organised, of one image, but has a viewpoint for each point; leave out either "
+            "width and height or viewpoint_x, viewpoint_y and viewpoint_z");
+    }
+    check_columns<std::uint8_t>(view,
+                                {{"red", &view.red}, {"green", &view.green}, {"blue", &view.blue}});
+    if (!view.pixel.empty() && view.pixel.size() != view.size()) {
+        refuse(view, "pixel has " + std::to_string(view.pixel.size()) + " values, but x has " +
+                         std::to_string(view.size()));
+    }
+    check_image(view);
+    check_viewpoint(view);
+}
+
 std::optional<FinitePoints> finite_points(const CloudView& view) {
-    check_arrays(view);
+    check_points(view);
     if (all_finite(view)) return {};
     FinitePoints out;
     PointCloud& to = out.cloud;

@@ -10,6 +10,10 @@
 // Points in the caller's memory, before anything relies on them.
 namespace topple {
 
+// Throws Error(input) where arrays differ in length or are null, or an image has another number of
+// pixels.
+void check_points(const CloudView& view);
+
 // A copy without the points that are not finite.
 struct FinitePoints {
     PointCloud cloud;
@@ -17,9 +21,8 @@ struct FinitePoints {
 };
 
 // None where every point is finite, and so is every normal: then the caller's arrays will do. A
-// normal that is not finite becomes 0, 0, 0. Throws Error(input) where arrays differ in length or
-// are null, where an image has another number of pixels, where no point is finite, or for a
-// coordinate or viewpoint beyond 1e6 m.
+// normal that is not finite becomes 0, 0, 0. Throws Error(input) as check_points() does, where no
+// point is finite, or for a coordinate or viewpoint beyond 1e6 m.
 std::optional<FinitePoints> finite_points(const CloudView& view);
 
 }  // namespace topple

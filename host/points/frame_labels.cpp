@@ -9,10 +9,13 @@
 #include <utility>
 
 #include "core/depth_noise.h"
+#include "core/rotation.h"
 #include "core/thread_pool.h"
+#include "core/vectors.h"
 #include "geometry/cell_grid.h"
 #include "io/text.h"
 #include "points/caller_frames.h"
+#include "points/caller_points.h"
 #include "points/formats/frame_sequence.h"
 #include "points/observation.h"
 
@@ -182,6 +185,25 @@ FrameLabels FrameLabeller::label(const FramesView& frames, std::size_t number,
     const CallerFrames given(frames);
     check_number(given.source(), number, given.size());
     return labels_of(*points_, given.intrinsics(), given.load(number), threads);
+}
+
+PointLabels FrameLabeller::label(const CloudView& points, const Mat4& sensor_to_world,
+                                 unsigned threads) const {
+    check_points(points);
+    PointLabels out;
+    out.primitive.assign(points.size(), -1);
+    out.object.assign(points.size(), -1);
+    ThreadPool pool(threads);
+    pool.each(points.size(), 1024, [&](std::size_t i) {
+        const Vec3 at{points.x[i], points.y[i], points.z[i]};
+        const double range_m = length(at);
+        if (!std::isfinite(range_m)) return;
+        const std::uint32_t nearest = points_->nearest(transformed(sensor_to_world, at), range_m);
+        if (nearest == Points::absent) return;
+        out.primitive[i] = points_->primitive(nearest);
+        out.object[i] = points_->object(nearest);
+    });
+    return out;
 }
 
 FrameLabels FrameLabeller::label(const std::filesystem::path& folder, std::size_t number,

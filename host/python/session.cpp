@@ -19,6 +19,10 @@ class PySession {
               std::uint64_t max_frame_bytes)
         : session_(intrinsics(size[0], size[1], camera), std::nullopt,
                    session_options(device, std::move(options), forget_gone, max_frame_bytes)) {}
+    PySession(const std::shared_ptr<SharedDevice>& device, ParseOptions options, bool forget_gone,
+              std::uint64_t max_frame_bytes)
+        : session_(Session::of_points(
+              session_options(device, std::move(options), forget_gone, max_frame_bytes))) {}
     PySession(const std::string& checkpoint, const std::shared_ptr<SharedDevice>& device,
               ParseOptions options, bool forget_gone, std::uint64_t max_frame_bytes)
         : session_(unlocked([&] {
@@ -31,6 +35,12 @@ class PySession {
     FrameId add(const PyFrame& frame, const py::array& pose) {
         const FramesView view = seen(frame, pose);
         return unlocked([&] { return session_.add(view.images[0], view.camera_to_world[0]); });
+    }
+    FrameId add_points(const std::vector<py::array>& points, const std::vector<py::array>& colours,
+                       const py::array& pose) {
+        const CloudView view = view_of(points, {}, colours, {});
+        const Mat4 to_world = mat4(pose);
+        return unlocked([&] { return session_.add(view, to_world); });
     }
     void correct(const std::vector<FrameId>& frames, const py::array& poses) {
         const auto numbers = row<const double>(poses, "camera_to_world");
@@ -46,6 +56,12 @@ class PySession {
             unlocked([&] { return session_.label(view.images[0], view.camera_to_world[0]); });
         return py::make_tuple(found.height, found.width, owned(std::move(found.thing)));
     }
+    py::array label_points(const std::vector<py::array>& points, const py::array& pose) const {
+        const CloudView view = view_of(points, {}, {}, {});
+        const Mat4 to_world = mat4(pose);
+        return owned(unlocked([&] { return session_.label(view, to_world); }));
+    }
+    bool is_of_points() const { return !session_.intrinsics(); }
     py::object update(std::optional<std::uint64_t> budget_ms) {
         return described(stoppable([&] {
             return budget_ms ? session_.update(std::chrono::milliseconds(*budget_ms))
@@ -62,6 +78,11 @@ class PySession {
     Session& session() { return session_; }
 
   private:
+    static Mat4 mat4(const py::array& pose) {
+        Mat4 out;
+        std::ranges::copy(row<const double>(pose, "sensor_to_world"), out.begin());
+        return out;
+    }
     static SessionOptions session_options(const std::shared_ptr<SharedDevice>& device,
                                           ParseOptions options, bool forget_gone,
                                           std::uint64_t max_frame_bytes) {
@@ -75,7 +96,7 @@ class PySession {
     FramesView seen(const PyFrame& frame, const py::array& pose) const {
         const std::array<std::uint32_t, 2> size{static_cast<std::uint32_t>(frame.first.shape(1)),
                                                 static_cast<std::uint32_t>(frame.first.shape(0))};
-        const Intrinsics& k = session_.intrinsics();
+        const Intrinsics k = session_.intrinsics().value_or(Intrinsics{});  // whose add() refuses
         return frames_view({frame}, size, pose, {k.fx, k.fy, k.cx, k.cy, k.depth_scale}, "frame");
     }
     static std::shared_ptr<Parsed> parsed(const ParseResult& result) {
@@ -101,10 +122,13 @@ void bind_session(py::module_& module) {
     py::class_<PySession>(module, "Session")
         .def(py::init<const std::array<std::uint32_t, 2>&, const std::array<double, 5>&,
                       const std::shared_ptr<SharedDevice>&, ParseOptions, bool, std::uint64_t>())
+        .def(py::init<const std::shared_ptr<SharedDevice>&, ParseOptions, bool, std::uint64_t>())
         .def(py::init<const std::string&, const std::shared_ptr<SharedDevice>&, ParseOptions, bool,
                       std::uint64_t>())
         .def("checkpoint", &PySession::checkpoint)
         .def("add", &PySession::add)
+        .def("add_points", &PySession::add_points)
+        .def("is_of_points", &PySession::is_of_points)
         .def("correct", &PySession::correct)
         .def("forget", [](PySession& s, FrameId frame) { s.session().forget(frame); })
         .def("frames", [](PySession& s) { return s.session().frames(); })
@@ -113,7 +137,8 @@ void bind_session(py::module_& module) {
         .def("settle", &PySession::settle)
         .def("cancel", &PySession::cancel)
         .def("scene", &PySession::scene)
-        .def("label", &PySession::label);
+        .def("label", &PySession::label)
+        .def("label_points", &PySession::label_points);
 }
 
 }  // namespace topple::python

@@ -79,7 +79,7 @@ def live(monkeypatch, tmp_path):
     modules = {'rclpy': {'ok': lambda: True, 'time': Fields(Time=Fields(from_msg=lambda s: s.sec + s.nanosec / 1e9))},
                'rclpy.node': {'Node': Node}, 'rclpy.qos': {'qos_profile_sensor_data': None, 'QoSProfile': Fields, 'DurabilityPolicy': Fields(TRANSIENT_LOCAL=1)},
                'tf2_ros': {'Buffer': Buffer, 'TransformListener': lambda *_: None, 'TransformException': TransformException},
-               'nav_msgs.msg': {'Path': message}, 'sensor_msgs.msg': {'CameraInfo': message, 'Image': message}, 'std_msgs.msg': {'String': message},
+               'nav_msgs.msg': {'Path': message}, 'sensor_msgs.msg': {'CameraInfo': message, 'Image': message, 'PointCloud2': message}, 'std_msgs.msg': {'String': message},
                'visualization_msgs.msg': {'Marker': Marker, 'MarkerArray': lambda: Fields(markers=[])}}
     for name, members in modules.items():
         monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
@@ -153,3 +153,23 @@ def test_it_takes_frames_follows_the_path_and_tells(live, walk):
     assert again.session.frames == list(range(6))
     again.update()
     assert [t['change'] for t in json.loads(again.topics['things'][0].data)] == ['none'] * len(told)
+
+
+def test_it_takes_points_of_a_lidar(live, monkeypatch):
+    monkeypatch.setitem(PARAMETERS, 'of_points', True)
+    node = live()
+    assert set(node.topics) == {'objects', 'things', 'points', 'path'}
+    node.timer()
+    assert 'nothing has come on points' in node.said.pop()
+    around = np.random.default_rng(1).normal(size=(2000, 3))
+    around *= 2 / np.abs(around).max(axis=1, keepdims=True)  # on the sides of a room of 4 m
+    for time in (0.5, 1.5):
+        pose = shifted(np.eye(4), 0.4 * time)
+        Buffer.poses[time] = pose
+        data = np.zeros(2000, np.dtype({'names': list('xyz'), 'formats': ['<f4'] * 3, 'offsets': [4, 8, 12], 'itemsize': 20}))
+        for axis, values in zip('xyz', (around - pose[:3, 3]).T):
+            data[axis] = values
+        fields = [Fields(name=name, offset=4 + 4 * n, datatype=7) for n, name in enumerate('xyz')]
+        node.topics['points'](Fields(header=Fields(stamp=stamp(time), frame_id='camera'), fields=fields, is_bigendian=0, width=2000, height=1, point_step=20,
+                                     row_step=40000, data=data.tobytes()))
+    assert node.session.frames == [0, 1] and node.changed.is_set() and not node.said

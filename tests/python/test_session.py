@@ -51,6 +51,45 @@ def test_an_update_is_a_parse_of_the_frames_that_are_there(device, depth_frames)
     assert live.frames[0] == 1
 
 
+@pytest.fixture(scope='module')
+def sweeps(walk):
+    """The frames as a sensor with z upwards and x ahead gives points, and its poses."""
+    axes = np.array([[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], float)  # of the sensor, in the camera's
+    u, v = np.meshgrid(np.arange(CAMERA.width), np.arange(CAMERA.height))
+    out = []
+    for pose, metres in walk:
+        seen = np.stack([metres * (u - CAMERA.cx) / CAMERA.fx, metres * (v - CAMERA.cy) / CAMERA.fy, metres], axis=-1).reshape(-1, 3)
+        out.append(((seen @ axes[:3, :3]).astype(np.float32), pose @ axes))
+    return out
+
+
+def test_points_come_in_place_of_frames(device, sweeps, tmp_path):
+    live = topple.Session(device=device, disturbances=[])
+    assert live.frames == []
+    for n, (points, pose) in enumerate(sweeps):
+        assert live.add(points, shifted(pose, 0.3 if n == 3 else 0)) == n
+    live.correct({3: sweeps[3][1]})
+    found = live.update()
+    world = [(points.astype(float) @ pose[:3, :3].T + pose[:3, 3]) for points, pose in sweeps]
+    parsed = topple.parse(np.concatenate(world).astype(np.float32), device=device, disturbances=[],
+                          viewpoint=np.concatenate([np.tile(pose[:3, 3].astype(np.float32), (len(points), 1)) for points, pose in sweeps]))
+    assert len(found.result.objects) == len(parsed.objects) > 2
+    assert found.result.voxel_size_m == parsed.voxel_size_m
+    labels = live.label(*sweeps[0])
+    assert labels.shape == (len(sweeps[0][0]),) and labels.dtype == np.int64 and (labels >= 0).mean() > 0.9
+    ids = np.array([t.id for t in found.things])
+    assert (labels == ids[found.result.point_object[:len(labels)]]).mean() > 0.98
+    live.checkpoint(tmp_path / 'points')
+    again = topple.Session.resume(tmp_path / 'points', device=device, disturbances=[])
+    coloured = np.full(sweeps[0][0].shape, 90, np.uint8)
+    assert again.add(tuple(sweeps[0][0].T + 0.001), sweeps[0][1], coloured) == len(sweeps)
+    for call, words in ((lambda: live.add(np.zeros((4, 4), np.uint16), np.eye(4)), 'needs intrinsics'), (lambda: live.add(np.zeros((4, 4), np.float32), np.eye(4)), r'\(N, 3\)'),
+                        (lambda: live.add(sweeps[0][0], None), r'shape \(4, 4\)'), (lambda: live.add(np.full((2, 3), np.nan, np.float32), np.eye(4)), 'finite'),
+                        (lambda: live.add(sweeps[0][0][:0], np.eye(4)), 'no points')):
+        with pytest.raises(topple.Error, match=words):
+            call()
+
+
 def test_an_update_keeps_its_budget_and_settles_as_a_parse(device, depth_frames):
     height, width = depth_frames[0].shape
     file = {'width': width, 'height': height, 'fx': CAMERA.fx, 'fy': CAMERA.fy, 'cx': CAMERA.cx, 'cy': CAMERA.cy, 'depth_scale': 1000}

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "topple/cloud_view.h"
 #include "topple/frames_view.h"
 #include "topple/parse.h"
 
@@ -20,10 +21,15 @@ struct FrameLabels {
     std::vector<std::int32_t> primitive, object;  // ids
 };
 
-// Finds the parts and objects of a result in depth frames: those that were parsed, or others that
-// were taken in the same place. A pixel shows what the point of the result belongs to that is
-// nearest to its reading, within the edge of a voxel, or three standard deviations of a reading
-// from so far away, if that is more.
+// The same of points, by point.
+struct PointLabels {
+    std::vector<std::int32_t> primitive, object;
+};
+
+// Finds the parts and objects of a result in depth frames or sweeps of points: those that were
+// parsed, or others that were taken in the same place. A pixel, or a point, shows what the point of
+// the result belongs to that is nearest to its reading, within the edge of a voxel, or three
+// standard deviations of a reading from so far away, if that is more.
 //
 // Holds 20 bytes for each point of the result, which it does not need any more. May be asked by
 // several threads at once.
@@ -41,6 +47,9 @@ class FrameLabeller {
     // them. Throws Error: input (what makes no sense, as parse() does), usage (there is no such
     // frame).
     FrameLabels label(const FramesView& frames, std::size_t number, unsigned threads = 0) const;
+    // The same of points, in a sensor's axes. Those that are not finite belong to nothing.
+    PointLabels label(const CloudView& points, const Mat4& sensor_to_world,
+                      unsigned threads = 0) const;
     // The same of a folder of frames.
     FrameLabels label(const std::filesystem::path& folder, std::size_t number,
                       unsigned threads = 0) const;

@@ -11,11 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "topple/cloud_view.h"
 #include "topple/frames_view.h"
 #include "topple/parse.h"
 
-// A scan that is still being made: frames come one by one, a SLAM system corrects their poses, and
-// in between one asks what is there and what may fall.
+// A scan that is still being made: depth frames, or sweeps of points, come one by one, a SLAM
+// system corrects their poses, and in between one asks what is there and what may fall.
 namespace topple {
 
 // Of a frame that was added: 0, 1, 2 .. in the order in which they came.
@@ -88,21 +89,30 @@ class Session {
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
 
+    // Of sweeps of points, as LiDARs and other scanners make them, in place of depth frames.
+    static Session of_points(SessionOptions options = {});
+
     // Copies the frame. Throws Error(input) for one without readings, for the frame before once
     // more, and for images and poses that parse() refuses; the session stays as it was.
     FrameId add(const FrameView& frame, const Mat4& camera_to_world);
+    // The same of points in the sensor's axes, z up, with colours or without; those that are not
+    // finite are left out, and normals, of which the result has its own. A session is of one or the
+    // other.
+    FrameId add(const CloudView& points, const Mat4& sensor_to_world);
     // After a loop closure: the poses that are others now. Those of frames that are not kept any
     // more count for nothing. Throws Error: usage (there was no such frame), input (no pose); no
     // pose is changed then.
     void correct(const std::map<FrameId, Mat4>& camera_to_world);
     // Leaves a frame out. Throws Error(usage) where there is none of that number.
     void forget(FrameId frame);
-    const Intrinsics& intrinsics() const;
-    std::vector<FrameId> frames() const;  // that are kept, ascending
-    std::uint64_t frame_bytes() const;    // that they take
+    const std::optional<Intrinsics>& intrinsics() const;  // none: of points
+    std::vector<FrameId> frames() const;                  // that are kept, ascending
+    std::uint64_t frame_bytes() const;                    // that they take
 
     // Parses the frames that are there now. Its result is bit for bit parse()'s of the same frames
-    // and poses, but for what has gone, whatever was added, corrected or forgotten before. One at a
+    // and poses, but for what has gone, whatever was added, corrected or forgotten before; of
+    // points, parse()'s of all in the world's frame, one sweep after the other, each with its
+    // sensor's place for a viewpoint. One at a
     // time; where nothing has changed since, it is the one before, with no changes. Throws what
     // parse() does; the scene before stays then.
     std::shared_ptr<const LiveScene> update();
@@ -131,6 +141,8 @@ class Session {
     std::shared_ptr<const LiveScene> scene() const;
     // The things of that scene in a depth frame. Throws Error(usage) before the first update.
     ThingLabels label(const FrameView& frame, const Mat4& camera_to_world) const;
+    // The same of points, by point; of a session of either.
+    std::vector<std::int64_t> label(const CloudView& points, const Mat4& sensor_to_world) const;
 
   private:
     class State;

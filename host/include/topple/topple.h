@@ -447,7 +447,8 @@ int topple_result_export(const topple_result* result, const char* format, const 
 /* --- A scan that is still being made: topple/session.h says more ----------------------------- */
 
 typedef struct topple_session topple_session;
-/* Of a camera; colour NULL: its colour images are seen as depth is. options NULL: defaults; what
+/* Of a camera, or, with both NULL, of sweeps of points. colour NULL: its colour images are seen as
+ * depth is. options NULL: defaults; what
  * they point to must stay as long as the session. max_frame_bytes 0: the default. keep_gone: 1 to
  * count readings, too, at places that later frames see through; else 0. */
 int topple_session_create(const topple_intrinsics* depth, const topple_intrinsics* colour,
@@ -464,6 +465,10 @@ int topple_session_resume(const char* file, const topple_options* options, uint6
  * of each. Those before one that is refused stay. */
 int topple_session_add(topple_session* session, const topple_frames* frames, uint64_t* ids,
                        topple_status* status);
+/* Adds points in the sensor's axes, z up, copied, to a session of points. sensor_to_world: 16
+ * numbers, row-major, metres. `id` may be NULL. */
+int topple_session_add_points(topple_session* session, const topple_cloud* points,
+                              const double* sensor_to_world, uint64_t* id, topple_status* status);
 /* camera_to_world: 16 numbers for each of `count` frames, row-major, metres. */
 int topple_session_correct(topple_session* session, const uint64_t* ids,
                            const double* camera_to_world, uint64_t count, topple_status* status);
@@ -502,6 +507,10 @@ int topple_session_thing(const topple_session* session, uint64_t index, topple_t
 /* The thing that each pixel of frame `number` shows, row by row; -1: nothing that is known. */
 int topple_session_label(const topple_session* session, const topple_frames* frames,
                          uint64_t number, int64_t* things, topple_status* status);
+/* The same by point. */
+int topple_session_label_points(const topple_session* session, const topple_cloud* points,
+                                const double* sensor_to_world, int64_t* things,
+                                topple_status* status);
 
 /* --- Two scans of one room: topple/compare.h says more --------------------------------------- */
 

@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _topple
-from ._arrays import usage
+from ._arrays import channels, columns, usage
 from ._device import open_device
 from ._frames import colour_image, depth_image, poses as _poses
 from ._options import named, option, options
-from .stages import Intrinsics, camera
+from .stages import camera
 
 
 class Thing(NamedTuple):
@@ -34,18 +34,18 @@ class LiveScene(NamedTuple):
 
 
 class Session:
-    """A scan that grows: depth frames come one by one, a SLAM system corrects their poses, and update() says what is there, and what came,
-    moved and has gone since.
+    """A scan that grows: depth frames, or sweeps of points, come one by one, a SLAM system corrects their poses, and update() says what is
+    there, and what came, moved and has gone since.
 
-    intrinsics: a topple.stages.Intrinsics of all frames, or a dict as intrinsics.json has it. forget_gone: whether readings are left out at
+    intrinsics: a topple.stages.Intrinsics of all frames, or a dict as intrinsics.json has it; None: of points, as LiDARs give them. forget_gone: whether readings are left out at
     places that most of the latest looks see through. max_frame_bytes: that kept frames take, compressed (640 x 480 pixels about 0.3 MB); where
     that is not enough those go whose camera has a neighbour in time next to it. The other options are those of parse(). One thread may add
     frames while another updates. Raises Error as parse() does."""
 
     @named
-    def __init__(self, intrinsics, *, device=None, voxel_m=0.0, up=None, disturbances=None, seed=1, density_kg_m3=700.0, friction=0.3,
+    def __init__(self, intrinsics=None, *, device=None, voxel_m=0.0, up=None, disturbances=None, seed=1, density_kg_m3=700.0, friction=0.3,
                  tolerable_J=0.1, wind_m_s=12.0, forget_gone=True, max_frame_bytes=2_000_000_000):
-        self._camera = camera(intrinsics, 'intrinsics')
+        self._camera = None if intrinsics is None else camera(intrinsics, 'intrinsics')
         sized = isinstance(intrinsics, Mapping) and {'width', 'height'} <= intrinsics.keys()
         self._size = (intrinsics['width'], intrinsics['height']) if sized else None
         self._options = options(disturbances, {'voxel_m': voxel_m, 'up': up, 'seed': seed, 'density_kg_m3': density_kg_m3, 'friction': friction,
@@ -55,6 +55,7 @@ class Session:
         self._forget_gone = option('forget_gone', forget_gone)
         self._max_frame_bytes = option('max_frame_bytes', max_frame_bytes)
         self._session = None  # once the frames' size is known
+        self._of_points = intrinsics is None
 
     @classmethod
     def resume(cls, path, **options):
@@ -62,8 +63,9 @@ class Session:
         Session, but for its intrinsics, which the file has. scene is None until update()."""
         if 'intrinsics' in options:
             raise TypeError('resume() takes no intrinsics: those of the checkpoint count')
-        session = cls(Intrinsics(1, 1, 0, 0), **options)
+        session = cls(**options)
         session._begin(os.fspath(path))
+        session._of_points = session._session.is_of_points()
         return session
 
     def checkpoint(self, path):
@@ -73,7 +75,18 @@ class Session:
     def add(self, depth, camera_to_world, colour=None):
         """Copies a frame in, and returns its number, from 0. depth: (H, W) uint16, metres times depth_scale, 0: no reading; or floats, metres.
         camera_to_world: (4, 4), metres, camera x right, y down, z forward. colour: (H, W, 3) uint8 sRGB, or None. A frame without
-        readings, or that of before once more, is an Error of kind "input"."""
+        readings, or that of before once more, is an Error of kind "input".
+
+        In a session of points, these come in place of depth: as parse() takes them, in the sensor's axes, z up, colours as many; and
+        camera_to_world is the sensor's."""
+        if self._of_points:
+            if getattr(depth, 'dtype', None) == np.uint16:
+                raise usage('depth: a session of depth frames needs intrinsics, which topple.Session() has none of')
+            points = columns(depth, 'xyz', 'points')
+            colours = [] if colour is None else channels(colour)
+            if self._session is None:
+                self._begin()
+            return self._session.add_points(points, colours, self._pose(camera_to_world))
         depth = depth_image(depth, 'depth')
         frame = depth, None if colour is None else colour_image(colour, 'colour')
         pose = self._pose(camera_to_world)
@@ -134,7 +147,10 @@ class Session:
         return self._described(self._session.scene()) if self._session else None
 
     def label(self, depth, camera_to_world):
-        """The id of the Thing that each pixel of a depth image shows, (H, W) int64; -1: nothing that is known."""
+        """The id of the Thing that each pixel of a depth image shows, (H, W) int64, or each point, (N,), in a session of points; -1: nothing
+        that is known."""
+        if self._of_points:
+            return self._begun().label_points(columns(depth, 'xyz', 'points'), self._pose(camera_to_world))
         height, width, ids = self._begun().label((depth_image(depth, 'depth'), None), self._pose(camera_to_world))
         return ids.reshape(height, width)
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "core/random.h"
 #include "host/api/c_api.h"
 #include "host/pipeline/small_walk.h"
 #include "topple/session.h"
@@ -111,6 +112,53 @@ TEST_F(CApi, ASessionIsThatOfCpp) {
     topple_session_release(session);
     EXPECT_EQ(topple_session_add(nullptr, &frames, nullptr, &status), TOPPLE_ERROR_USAGE);
     topple_session_release(nullptr);
+}
+
+TEST_F(CApi, ASessionOfPointsIsThatOfCpp) {
+    PointCloud points;
+    Random random(3);
+    for (int n = 0; n < 3000; ++n) {
+        // On the sides of a room, and of a box on its floor.
+        Vec3 way{random.normal(), random.normal(), random.normal()};
+        const double largest =
+            std::max({std::fabs(way[0]), std::fabs(way[1]), std::fabs(way[2]), 1e-9});
+        const double half = n % 3 ? 1.5 : 0.4, down = n % 3 ? 0 : -1.1;
+        points.x.push_back(static_cast<float>(half * way[0] / largest));
+        points.y.push_back(static_cast<float>(half * way[1] / largest));
+        points.z.push_back(static_cast<float>(half * way[2] / largest + down));
+    }
+    topple_cloud cloud;
+    topple_cloud_init(&cloud, sizeof(cloud));
+    cloud.x = points.x.data();
+    cloud.y = points.y.data();
+    cloud.z = points.z.data();
+    cloud.count = points.size();
+    options.disturbances = 0;
+    const Mat4 pose = DepthFrame{}.camera_to_world;
+    topple_session* session = nullptr;
+    ASSERT_EQ(topple_session_create(nullptr, nullptr, &options, 0, 1, &session, &status), TOPPLE_OK)
+        << status.message;
+    std::uint64_t id = 7, things = 0;
+    EXPECT_EQ(topple_session_add_points(session, &cloud, nullptr, &id, &status),
+              TOPPLE_ERROR_USAGE);
+    ASSERT_EQ(topple_session_add_points(session, &cloud, pose.data(), &id, &status), TOPPLE_OK)
+        << status.message;
+    EXPECT_EQ(id, 0u);
+    ASSERT_EQ(topple_session_update(session, &result, &things, &status), TOPPLE_OK)
+        << status.message;
+    SessionOptions same;
+    same.parse.device = device::open_device("native", 2);
+    same.parse.disturbances = {};
+    same.forget_gone = false;
+    Session other = Session::of_points(same);
+    other.add(CloudView(points), pose);
+    const auto expected = other.update();
+    ASSERT_EQ(things, expected->things.size());
+    std::vector<std::int64_t> labels(points.size());
+    ASSERT_EQ(topple_session_label_points(session, &cloud, pose.data(), labels.data(), &status),
+              TOPPLE_OK);
+    EXPECT_EQ(labels, other.label(CloudView(points), pose));
+    topple_session_release(session);
 }
 
 }  // namespace

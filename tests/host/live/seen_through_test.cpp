@@ -28,7 +28,7 @@ DepthFrame frame(std::uint16_t board_mm, double x_m = 0) {
 
 std::vector<Gone> gone(const std::vector<DepthFrame>& frames) {
     ThreadPool threads(2);
-    return Looks(k, frames, threads).seen_through([&](std::size_t n) {
+    return Looks(Projection(k), frames, threads).seen_through([&](std::size_t n) {
         return std::pair(n + 1, frames.size());
     });
 }
@@ -62,9 +62,10 @@ TEST(SeenThrough, PosesThatAreOffTellNothing) {
     const auto found = [&](double off_m, const std::vector<std::optional<Mat4>>& earlier) {
         std::vector<DepthFrame> frames{frame(2000), frame(0), frame(0), frame(0)};
         for (std::size_t n = 1; n < 4; ++n) frames[n].camera_to_world[11] = off_m;
-        const Gone gone = Looks(k, frames, threads, earlier).seen_through([&](std::size_t n) {
-            return std::pair(n + 1, frames.size());
-        })[0];
+        const Gone gone =
+            Looks(Projection(k), frames, threads, earlier).seen_through([&](std::size_t n) {
+                return std::pair(n + 1, frames.size());
+            })[0];
         return std::pair(std::ssize(gone), std::ranges::count_if(gone, [](const GonePixel& p) {
                              return p.through_of_fitting > 0;
                          }));
@@ -84,9 +85,10 @@ TEST(SeenThrough, PosesThatAreOffTellNothing) {
     // 0.3 m to the side: they fit, but for the board's edge, and did so better before.
     std::vector<DepthFrame> frames{frame(2000), frame(2000, 0.3)};
     const auto edge = [&](const std::vector<std::optional<Mat4>>& earlier) {
-        const Gone gone = Looks(k, frames, threads, earlier).seen_through([&](std::size_t n) {
-            return std::pair(n + 1, frames.size());
-        })[0];
+        const Gone gone =
+            Looks(Projection(k), frames, threads, earlier).seen_through([&](std::size_t n) {
+                return std::pair(n + 1, frames.size());
+            })[0];
         return std::ranges::any_of(gone,
                                    [](const GonePixel& p) { return p.through_of_fitting > 0; });
     };

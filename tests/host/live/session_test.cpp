@@ -248,7 +248,7 @@ TEST_F(Sessions, GoOnFromACheckpoint) {
     Session again = Session::resume(file, quick());
     EXPECT_EQ(again.scene(), nullptr);
     EXPECT_EQ(again.frames(), (std::vector<FrameId>{0, 2, 3}));
-    EXPECT_EQ(again.intrinsics().fx, walk_->intrinsics.fx);
+    EXPECT_EQ(again.intrinsics()->fx, walk_->intrinsics.fx);
     EXPECT_THROW(again.add(frame(3), shifted(pose(3), 0.3)), Error) << "the frame before";
     const auto found = more(again);
     expect_same(found->result->scene, expected->result->scene);

@@ -11,6 +11,7 @@ from .errors import wrong
 NEAR_M = 4096.0
 # Of each point, as PCL calls them.
 VIEWPOINT = ('vp_x', 'vp_y', 'vp_z')
+MESSAGE_TYPES = {1: 'i1', 2: 'u1', 3: 'i2', 4: 'u2', 5: 'i4', 6: 'u4', 7: 'f4', 8: 'f8'}  # of fields of sensor_msgs/PointCloud2
 
 
 @dataclasses.dataclass
@@ -88,3 +89,27 @@ def _pcd_header(records, viewpoint):
     return '\n'.join(['# .PCD v0.7', 'VERSION 0.7', 'FIELDS ' + ' '.join(names), 'SIZE' + ' 4' * len(names), 'TYPE ' + ' '.join(kinds),
                       'COUNT' + ' 1' * len(names), f'WIDTH {len(records)}', 'HEIGHT 1', f'VIEWPOINT {place}', f'POINTS {len(records)}',
                       'DATA binary', ''])
+
+
+def message_points(message, path):
+    """Points (N, 3) float64, and colours (N, 3) uint8 or None, of a sensor_msgs/PointCloud2. path: what errors name."""
+    fields = {field.name: field for field in message.fields}
+    missing = [name for name in 'xyz' if name not in fields]
+    if missing:
+        raise wrong(path, f'has a PointCloud2 without field {missing[0]}')
+    order = '>' if message.is_bigendian else '<'
+    names = ['x', 'y', 'z'] + [name for name in ('rgb', 'rgba') if name in fields][:1]
+    kinds = ['u4' if name.startswith('rgb') else MESSAGE_TYPES[fields[name].datatype] for name in names]
+    layout = np.dtype({'names': names, 'formats': [order + kind for kind in kinds],
+                       'offsets': [fields[name].offset for name in names], 'itemsize': message.point_step})
+    data = np.frombuffer(message.data, np.uint8)
+    row = message.width * message.point_step
+    if message.row_step < row or len(data) < message.row_step * message.height:
+        raise wrong(path, f'has a PointCloud2 of {message.width} x {message.height} points in {len(data)} bytes')
+    rows = data[:message.row_step * message.height].reshape(message.height, message.row_step)[:, :row]
+    records = np.ascontiguousarray(rows).reshape(-1).view(layout)
+    points = np.stack([records[axis].astype(float) for axis in 'xyz'], axis=1)
+    if len(names) == 3:
+        return points, None
+    packed = records[names[3]]
+    return points, np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=1).astype(np.uint8)

@@ -10,7 +10,7 @@ from collections import Counter
 import numpy as np
 
 from . import images
-from .cloud import Cloud, kept
+from .cloud import Cloud, kept, message_points
 from .errors import needs, reading, wrong
 from .frames import Camera, FrameFolder, png
 from .limits import Budget
@@ -24,7 +24,6 @@ DEPTH_ENCODINGS = {'16UC1': ('u2', 0.001), 'mono16': ('u2', 0.001), '32FC1': ('f
 # A camera that hardly moved sees nothing new.
 STEP_M, TURN_RAD = 0.03, np.deg2rad(2)
 CELL_M = 0.01  # of several clouds each cell keeps its first point
-TYPES = {1: 'i1', 2: 'u1', 3: 'i2', 4: 'u2', 5: 'i4', 6: 'u4', 7: 'f4', 8: 'f8'}
 
 
 def recognises(path):
@@ -279,30 +278,6 @@ def _frames(bag, folder, topic, others, wait=None):
     return folder, frames.finish(notes), None
 
 
-def _points(message, path):
-    """Points (N, 3) float64, and colours (N, 3) uint8 or None."""
-    fields = {field.name: field for field in message.fields}
-    missing = [name for name in 'xyz' if name not in fields]
-    if missing:
-        raise wrong(path, f'has a PointCloud2 without field {missing[0]}')
-    order = '>' if message.is_bigendian else '<'
-    names = ['x', 'y', 'z'] + [name for name in ('rgb', 'rgba') if name in fields][:1]
-    kinds = ['u4' if name.startswith('rgb') else TYPES[fields[name].datatype] for name in names]
-    layout = np.dtype({'names': names, 'formats': [order + kind for kind in kinds],
-                       'offsets': [fields[name].offset for name in names], 'itemsize': message.point_step})
-    data = np.asarray(message.data, np.uint8)
-    row = message.width * message.point_step
-    if message.row_step < row or len(data) < message.row_step * message.height:
-        raise wrong(path, f'has a PointCloud2 of {message.width} x {message.height} points in {len(data)} bytes')
-    rows = data[:message.row_step * message.height].reshape(message.height, message.row_step)[:, :row]
-    records = np.ascontiguousarray(rows).reshape(-1).view(layout)
-    points = np.stack([records[axis].astype(float) for axis in 'xyz'], axis=1)
-    if len(names) == 3:
-        return points, None
-    packed = records[names[3]]
-    return points, np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=1).astype(np.uint8)
-
-
 def _thinned(points, *others):
     """The first point of each cell, in order, and what else there is of it."""
     kept = np.flatnonzero(np.isfinite(points).all(axis=1))
@@ -323,7 +298,7 @@ def _cloud(bag, topic, others):
             unplaced += 1
             continue
         with reading(bag.path, FORMAT):
-            new, seen = _points(message, bag.path)
+            new, seen = message_points(message, bag.path)
         coloured = coloured or seen is not None
         points = np.concatenate([points, new @ pose[:3, :3].T + pose[:3, 3]])
         colours = np.concatenate([colours, np.zeros((len(new), 3), np.uint8) if seen is None else seen])

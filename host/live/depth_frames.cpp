@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include <numeric>
+#include <utility>
+
+#include "live/coarse_frame.h"
+#include "live/scan_kind.h"
+#include "points/caller_frames.h"
+
+namespace topple::live {
+namespace {
+
+class DepthFrames final : public ScanKind {
+  public:
+    explicit DepthFrames(const Intrinsics& depth)
+        : k_(depth), coarse_(depth), projection_(coarse_.intrinsics()) {}
+    const Projection& projection() const override { return projection_; }
+    DepthFrame image(const PosedFrame& frame) const override {
+        DepthFrame out = coarse_.of(frame.frame->depth_frame());
+        out.camera_to_world = frame.pose;
+        return out;
+    }
+    ParseResult parse(const Frames& frames, std::span<const Gone> gone, const std::string& source,
+                      const ParseOptions& options, bool& left_out) const override {
+        FramesView view;
+        view.intrinsics = k_;
+        view.source = source;
+        std::vector<const KeptFrame*> images;
+        for (const auto& [frame, kept] : frames) {
+            view.camera_to_world.push_back(kept.pose);
+            images.push_back(kept.frame.get());
+        }
+        DepthFrame current;
+        view.image = [&](std::size_t n) {
+            current = images[n]->frame();
+            if (!gone.empty()) left_out |= coarse_.leave_out(gone[n], current);
+            return view_of(current, k_);
+        };
+        return topple::parse(view, options);
+    }
+    Spots spots(const PosedFrame& frame, const DepthFrame& image, const FrameLabeller& labeller,
+                unsigned threads) const override {
+        FramesView view;
+        view.intrinsics = coarse_.intrinsics();
+        view.camera_to_world = {frame.pose};
+        view.images = {view_of(image, view.intrinsics)};
+        Spots out;
+        out.pixel.resize(projection_.pixels());
+        std::iota(out.pixel.begin(), out.pixel.end(), 0u);
+        out.object = labeller.label(view, 0, threads).object;
+        return out;
+    }
+
+  private:
+    Intrinsics k_;
+    Coarse coarse_;
+    Projection projection_;
+};
+
+}  // namespace
+
+std::unique_ptr<ScanKind> depth_frames(const Intrinsics& depth) {
+    return std::make_unique<DepthFrames>(depth);
+}
+
+std::unique_ptr<ScanKind> scan_kind(const Checkpoint& of) {
+    return of.depth ? depth_frames(*of.depth) : point_sweeps();
+}
+
+}  // namespace topple::live
