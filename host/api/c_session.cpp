@@ -15,6 +15,7 @@ struct topple_session {
     topple_options options;  // whose callbacks the session has
     std::unique_ptr<Session> session;
     std::shared_ptr<const LiveScene> updated;
+    std::vector<Appeared> appeared;
 };
 
 static_assert(int{TOPPLE_CHANGE_FOUND} == int(Change::found) &&
@@ -172,6 +173,33 @@ int topple_session_settle(topple_session* session, topple_result** result, toppl
 
 int topple_session_cancel(topple_session* session, topple_status* status) {
     return guarded(status, [&] { needed(session, "session").session->cancel(); });
+}
+
+int topple_session_glance(topple_session* session, uint64_t* count, topple_status* status) {
+    return guarded(status, [&] {
+        topple_session& of = needed(session, "session");
+        of.appeared = of.session->glance();
+        needed(count, "count") = of.appeared.size();
+    });
+}
+
+int topple_session_appeared(const topple_session* session, uint64_t index,
+                            topple_appeared* appeared, topple_status* status) {
+    return guarded(status, [&] {
+        const Appeared& from = item(needed(session, "session").appeared, index, "appeared");
+        topple_appeared out{};
+        std::ranges::copy(from.middle_m, out.middle_m);
+        std::ranges::copy(from.size_m, out.size_m);
+        out.mass_kg = from.mass_kg;
+        out.mass_error_kg = from.mass_error_kg;
+        out.stands_on = from.stands_on.empty() ? -1 : from.stands_on.front();
+        out.barrier_J = from.barrier_J;
+        out.barrier_error_J = from.barrier_error_J;
+        out.release_J = from.release_J;
+        out.mode = from.mode.c_str();
+        out.unsafety_category = from.unsafety_category.c_str();
+        give(out, appeared, "appeared");
+    });
 }
 
 int topple_session_thing(const topple_session* session, uint64_t index, topple_thing* thing,

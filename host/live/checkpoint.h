@@ -15,7 +15,8 @@ namespace topple::live {
 
 struct PosedFrame {
     std::shared_ptr<const KeptFrame> frame;
-    Mat4 pose{};  // as it was given
+    Mat4 pose{};                                // as it was given
+    std::shared_ptr<const DepthFrame> image{};  // ScanKind::image() of it; no file has it
 };
 
 struct KeptFrames {

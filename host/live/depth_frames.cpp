@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -14,10 +15,8 @@ class DepthFrames final : public ScanKind {
     explicit DepthFrames(const Intrinsics& depth)
         : k_(depth), coarse_(depth), projection_(coarse_.intrinsics()) {}
     const Projection& projection() const override { return projection_; }
-    DepthFrame image(const PosedFrame& frame) const override {
-        DepthFrame out = coarse_.of(frame.frame->depth_frame());
-        out.camera_to_world = frame.pose;
-        return out;
+    DepthFrame image(const KeptFrame& frame) const override {
+        return coarse_.of(frame.depth_frame());
     }
     ParseResult parse(const Frames& frames, std::span<const Gone> gone, const std::string& source,
                       const ParseOptions& options, bool& left_out) const override {
@@ -36,6 +35,23 @@ class DepthFrames final : public ScanKind {
             return view_of(current, k_);
         };
         return topple::parse(view, options);
+    }
+    PointCloud points(const PosedFrame& frame) const override {
+        constexpr std::uint32_t enough_columns = 320;
+        const std::size_t step = std::max(1u, k_.width / enough_columns);
+        const Projection by(k_);
+        const DepthFrame seen = frame.frame->depth_frame();
+        PointCloud out;
+        for (std::size_t v = 0; v < k_.height; v += step)
+            for (std::size_t u = 0; u < k_.width; u += step) {
+                const std::uint16_t stored = seen.depth[v * k_.width + u];
+                if (stored == 0) continue;
+                const auto [x, y, z] = by.place(u, v, stored / k_.depth_scale);
+                out.x.push_back(x);
+                out.y.push_back(y);
+                out.z.push_back(z);
+            }
+        return out;
     }
     Spots spots(const PosedFrame& frame, const DepthFrame& image, const FrameLabeller& labeller,
                 unsigned threads) const override {

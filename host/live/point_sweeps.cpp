@@ -8,8 +8,8 @@
 namespace topple::live {
 namespace {
 
-// Of the image of a sweep: 2 degrees, the rows of sensors that have sixteen.
-constexpr std::uint32_t image_rows = 90;
+// Of the image of a sweep: a degree each.
+constexpr std::uint32_t image_rows = 180;
 constexpr double millimetres = 1000;
 // Things are told by so many points of a sweep at most.
 constexpr std::size_t most_spots = 4096;
@@ -17,11 +17,10 @@ constexpr std::size_t most_spots = 4096;
 class PointSweeps final : public ScanKind {
   public:
     const Projection& projection() const override { return projection_; }
-    DepthFrame image(const PosedFrame& frame) const override {
+    DepthFrame image(const KeptFrame& frame) const override {
         DepthFrame out;
-        out.camera_to_world = frame.pose;
         out.depth.assign(projection_.pixels(), 0);
-        const PointCloud points = frame.frame->points();
+        const PointCloud points = frame.points();
         for (std::size_t i = 0; i < points.size(); ++i) {
             const auto seen = projection_.see({points.x[i], points.y[i], points.z[i]});
             if (!seen) continue;
@@ -51,6 +50,7 @@ class PointSweeps final : public ScanKind {
         }
         return topple::parse(CloudView(all), options);
     }
+    PointCloud points(const PosedFrame& frame) const override { return frame.frame->points(); }
     Spots spots(const PosedFrame& frame, const DepthFrame&, const FrameLabeller& labeller,
                 unsigned threads) const override {
         const PointCloud points = frame.frame->points();

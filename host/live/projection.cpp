@@ -59,10 +59,17 @@ std::vector<std::uint16_t> Projection::nearest_around(
         for (std::size_t u = 0; u < width; ++u) {
             if (!around_ && (u == 0 || u + 1 == width)) continue;
             std::uint16_t least = 65535;
-            for (std::size_t row = v - 1; row <= v + 1; ++row)
-                for (std::size_t column = u + width - 1; column <= u + width + 1; ++column)
-                    least = std::min(least, stored[row * width + column % width]);
-            out[v * width + u] = least;
+            std::size_t readings = 0;
+            for (std::size_t row = v - 1; row <= v + 1; ++row) {
+                for (std::size_t column = u + width - 1; column <= u + width + 1; ++column) {
+                    const std::uint16_t one = stored[row * width + column % width];
+                    if (one == 0) continue;
+                    least = std::min(least, one);
+                    ++readings;
+                }
+            }
+            // A sweep has gaps between its rows, of which three pixels in a row are one.
+            if (readings >= (around_ ? 3u : 9u)) out[v * width + u] = least;
         }
     }
     return out;

@@ -33,7 +33,8 @@ class Projection {
     };
     // None: the place is out of view.
     std::optional<Seen> see(const std::array<float, 3>& place) const;
-    // By pixel, the least stored reading of it and its eight neighbours; 0 where one is missing.
+    // By pixel, the least stored reading of it and its eight neighbours; 0 where one of these has
+    // none, or, of what is around, more than six.
     std::vector<std::uint16_t> nearest_around(const std::vector<std::uint16_t>& stored) const;
 
   private:

@@ -29,13 +29,15 @@ class ScanKind {
     virtual ~ScanKind() = default;
     // Of images that are coarse, but enough to tell things by.
     virtual const Projection& projection() const = 0;
-    // Of a frame, by that; with its pose.
-    virtual DepthFrame image(const PosedFrame& frame) const = 0;
+    // Of a frame, by that, without its pose.
+    virtual DepthFrame image(const KeptFrame& frame) const = 0;
     // What parse() finds in them, called `source`. gone: of each frame what is left out of it where
     // that is sure; empty: nothing. left_out: whether anything was.
     virtual ParseResult parse(const Frames& frames, std::span<const Gone> gone,
                               const std::string& source, const ParseOptions& options,
                               bool& left_out) const = 0;
+    // Its readings, or enough of them, in the sensor's axes.
+    virtual PointCloud points(const PosedFrame& frame) const = 0;
     // Some places of a frame, the same ones whatever its pose is: pixels of its image, and the
     // objects that a result has there, -1: none.
     struct Spots {

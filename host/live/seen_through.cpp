@@ -11,8 +11,6 @@
 namespace topple::live {
 namespace {
 
-// Frames that are asked, of those that look the same way.
-constexpr std::size_t most_asked = 16;
 constexpr double most_turned_cosine = 0.5, most_moved_m = 4;
 // Looks that decide, the first ones.
 constexpr int most_looks = 3;
@@ -27,6 +25,12 @@ constexpr double most_worse = 0.01, least_before = 0.5;
 
 }  // namespace
 
+bool look_alike(const Projection& by, const Mat4& a, const Mat4& b) {
+    const double cosine = a[2] * b[2] + a[6] * b[6] + a[10] * b[10];
+    const double moved = std::hypot(a[3] - b[3], a[7] - b[7], a[11] - b[11]);
+    return (by.is_around() || cosine >= most_turned_cosine) && moved <= most_moved_m;
+}
+
 struct Looks::Camera {
     explicit Camera(const Mat4& pose) {
         for (std::size_t n = 0; n < 12; ++n) m[n] = static_cast<float>(pose[n]);
@@ -39,12 +43,6 @@ struct Looks::Camera {
         const float x = p[0] - m[3], y = p[1] - m[7], z = p[2] - m[11];
         return {m[0] * x + m[4] * y + m[8] * z, m[1] * x + m[5] * y + m[9] * z,
                 m[2] * x + m[6] * y + m[10] * z};
-    }
-    // All that is around is seen whichever way a sensor is turned.
-    bool looks_like(const Camera& other, bool around) const {
-        const double cosine = m[2] * other.m[2] + m[6] * other.m[6] + m[10] * other.m[10];
-        const double moved = std::hypot(m[3] - other.m[3], m[7] - other.m[7], m[11] - other.m[11]);
-        return (around || cosine >= most_turned_cosine) && moved <= most_moved_m;
     }
     // Where a pixel's reading lies.
     std::array<float, 3> place(const Projection& by, std::size_t u, std::size_t v, double z) const {
@@ -141,7 +139,7 @@ std::vector<Gone> Looks::seen_through(const Asked& asked) const {
         const auto [first, last] = asked(n);
         std::vector<Other> others;
         for (std::size_t other = last; other-- > first && others.size() < most_asked;)
-            if (cameras[n].looks_like(cameras[other], by.is_around()))
+            if (look_alike(by, frames_[n].camera_to_world, frames_[other].camera_to_world))
                 others.push_back({other, fit(n, other)});
         for (std::uint32_t v = 0; v < by.height(); ++v) {
             for (std::uint32_t u = 0; u < by.width(); ++u) {

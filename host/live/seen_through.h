@@ -31,6 +31,11 @@ using Gone = std::vector<GonePixel>;
 // Which others are asked about a frame: [first, last) of those given, the last ones first.
 using Asked = std::function<std::pair<std::size_t, std::size_t>(std::size_t frame)>;
 
+// Frames that are asked about one, of those that look the same way.
+inline constexpr std::size_t most_asked = 16;
+// Whether sensors with these poses do: all that is around is seen whichever way one is turned.
+bool look_alike(const Projection& by, const Mat4& a, const Mat4& b);
+
 // Images by one projection that are asked about one another; all must stay.
 class Looks {
   public:

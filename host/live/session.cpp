@@ -15,12 +15,14 @@
 #include "core/checksum.h"
 #include "core/random.h"
 #include "device/cancelling.h"
+#include "live/appeared.h"
 #include "live/checkpoint.h"
 #include "live/scan_kind.h"
 #include "live/seen_through.h"
 #include "points/caller_frames.h"
 #include "points/caller_points.h"
 #include "points/formats/rigid_pose.h"
+#include "topple/device.h"
 #include "topple/error.h"
 #include "topple/frame_labels.h"
 #include "topple/kernels/device.h"
@@ -33,6 +35,9 @@ constexpr std::size_t most_telling = 96;
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds no_budget{0}, most_budget{86'400'000};  // no clock runs over
+
+// A glance looks at so many of the latest frames.
+constexpr std::size_t most_glanced = 4;
 
 // One that has nothing to do with when it was taken: of a camera that swings to and fro, each
 // second frame looks the same way.
@@ -90,7 +95,10 @@ class Session::State {
             return cancelling_ || (asked && asked());
         };
         threads_ = options_.parse.device->threads().threads();
-        for (const auto& [frame, kept] : frames_.kept) bytes_ += kept.frame->bytes();
+        for (auto& [frame, kept] : frames_.kept) {
+            kept.image = std::make_shared<const DepthFrame>(kind_->image(*kept.frame));
+            bytes_ += bytes_of(kept);
+        }
         changes_ = frames_.kept.size();
         keep_to_limit();
     }
@@ -165,6 +173,32 @@ class Session::State {
         auto out = told();  // before the next one is
         begin_behind();
         return out;
+    }
+    std::vector<Appeared> glance() const {
+        std::shared_ptr<const LiveScene> scene;
+        std::shared_ptr<const FrameLabeller> labeller;
+        {
+            const std::lock_guard lock(scene_mutex_);
+            scene = scene_;
+            labeller = labeller_;
+        }
+        if (!scene) return {};
+        // An update may be at work with the other one; results are the same on any.
+        const std::lock_guard one_at_a_time(glance_mutex_);
+        if (!glancing_) glancing_ = device::open_device("native", threads_);
+        const auto [frames, changes] = snapshot();
+        std::vector<Vec3> places;
+        std::size_t glanced = 0;
+        for (auto at = frames.rbegin(); at != frames.rend() && glanced < most_glanced; ++at) {
+            if (std::ranges::binary_search(scene->frames, at->first)) continue;
+            ++glanced;
+            const std::vector<Vec3> came = live::places_that_came(
+                *scene->result, *labeller, kind_->points(at->second), at->second.pose,
+                kind_->projection(), came_in(at->second, frames, scene->frames), threads_);
+            places.insert(places.end(), came.begin(), came.end());
+        }
+        return live::judge_bodies(*glancing_, *scene->result,
+                                  live::new_bodies(*scene->result, places), options_.parse);
     }
     std::shared_ptr<const ParseResult> settle() {
         const std::lock_guard one_at_a_time(update_mutex_);
@@ -259,11 +293,12 @@ class Session::State {
         if (sum.value() == frames_.last)
             throw Error(ErrorKind::input,
                         name_of(frames_.next) + ": it is the frame before once more");
-        std::shared_ptr<const live::KeptFrame> kept = kept_frame();
+        live::PosedFrame kept{kept_frame(), given};
+        kept.image = std::make_shared<const DepthFrame>(kind_->image(*kept.frame));
         const std::lock_guard lock(frames_mutex_);
         frames_.last = sum.value();
-        bytes_ += kept->bytes();
-        frames_.kept[frames_.next] = {std::move(kept), given};
+        bytes_ += bytes_of(kept);
+        frames_.kept[frames_.next] = std::move(kept);
         ++changes_;
         keep_to_limit();
         return frames_.next++;
@@ -276,9 +311,17 @@ class Session::State {
         throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
     }
     void drop(Frames::iterator kept) {
-        bytes_ -= kept->second.frame->bytes();
+        bytes_ -= bytes_of(kept->second);
         frames_.kept.erase(kept);
         ++changes_;
+    }
+    static std::uint64_t bytes_of(const live::PosedFrame& kept) {
+        return kept.frame->bytes() + kept.image->depth.size() * sizeof(std::uint16_t);
+    }
+    static DepthFrame posed_image(const live::PosedFrame& kept) {
+        DepthFrame out = *kept.image;
+        out.camera_to_world = kept.pose;
+        return out;
     }
     void keep_to_limit() {
         while (bytes_ > options_.max_frame_bytes && frames_.kept.size() > 1) drop_least_missed();
@@ -299,6 +342,29 @@ class Session::State {
         const std::lock_guard lock(frames_mutex_);
         if (frames_.kept.empty()) no_frames();
         return {frames_.kept, changes_};
+    }
+    // By pixel of its image: whether frames of an update saw through what it shows.
+    std::vector<bool> came_in(const live::PosedFrame& frame, const Frames& frames,
+                              const std::vector<FrameId>& parsed) const {
+        std::vector<DepthFrame> seen;
+        for (auto id = parsed.rbegin(); id != parsed.rend() && seen.size() < live::most_asked;
+             ++id) {
+            const auto kept = frames.find(*id);
+            if (kept != frames.end() &&
+                live::look_alike(kind_->projection(), frame.pose, kept->second.pose))
+                seen.push_back(posed_image(kept->second));
+        }
+        std::ranges::reverse(seen);
+        seen.push_back(posed_image(frame));
+        const std::size_t last = seen.size() - 1;
+        const live::Looks looks(kind_->projection(), seen, glancing_->threads());
+        const auto came = looks.seen_through(
+            [&](std::size_t n) { return std::pair(std::size_t{0}, n == last ? last : 0); });
+        std::vector<bool> out(kind_->projection().pixels());
+        for (const live::GonePixel& pixel : came[last])
+            out[std::size_t{pixel.v} * kind_->projection().width() + pixel.u] =
+                pixel.through_of_fitting > 0;
+        return out;
     }
     std::uint64_t changes() const {
         const std::lock_guard lock(frames_mutex_);
@@ -385,7 +451,7 @@ class Session::State {
             old += frame < first_new;
             const auto parsed = poses.find(frame);
             earlier.push_back(parsed == poses.end() ? std::nullopt : std::optional(parsed->second));
-            out.seen.push_back(kind_->image(kept));
+            out.seen.push_back(posed_image(kept));
         }
         const live::Looks looks(kind_->projection(), out.seen, options_.parse.device->threads(),
                                 std::move(earlier));
@@ -442,6 +508,9 @@ class Session::State {
     Frames parsed_;                              // of which something was left out
     std::shared_ptr<const ParseResult> of_all_;  // with that; null: not known yet
 
+    mutable std::mutex glance_mutex_;
+    mutable std::shared_ptr<device::Device> glancing_;
+
     mutable std::mutex scene_mutex_;
     live::Remembered remembered_;
     std::shared_ptr<const LiveScene> scene_;
@@ -490,6 +559,9 @@ std::shared_ptr<const LiveScene> Session::update() {
 }
 std::shared_ptr<const LiveScene> Session::update(std::chrono::milliseconds budget) {
     return state_->update(budget);
+}
+std::vector<Appeared> Session::glance() const {
+    return state_->glance();
 }
 std::shared_ptr<const ParseResult> Session::settle() {
     return state_->settle();

@@ -96,17 +96,6 @@ void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks
     }
 }
 
-void take_mass(const ObjectMasses::Object& mass, Body& object) {
-    object.mass_model = mass.model;
-    object.inertia = mass.inertia;
-    object.drawers = mass.drawers;
-    add_independent(mass.contents_error, object.body_error);
-    // What is off of alike things holds what is off of each by itself.
-    object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
-    object.density_error_kg = mass.density_error_share * object.candidate.body.mass_kg;
-    if (mass.weighed) object.body_error.mass_kg = object.density_error_kg = 0;
-}
-
 // Of the building no piece that is less likely a thing is told.
 constexpr double least_possible = 0.25;
 
@@ -174,6 +163,17 @@ void collect_objects(const SolidScene& solids, const BodyMaker& maker, const Par
 }
 
 }  // namespace
+
+void take_mass(const ObjectMasses::Object& mass, Body& object) {
+    object.mass_model = mass.model;
+    object.inertia = mass.inertia;
+    object.drawers = mass.drawers;
+    add_independent(mass.contents_error, object.body_error);
+    // What is off of alike things holds what is off of each by itself.
+    object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
+    object.density_error_kg = mass.density_error_share * object.candidate.body.mass_kg;
+    if (mass.weighed) object.body_error.mass_kg = object.density_error_kg = 0;
+}
 
 PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
                       StageClock& stage) {

@@ -70,6 +70,9 @@ struct Body {
     ObjectBox box;
 };
 
+// Takes over what is known of its mass.
+void take_mass(const ObjectMasses::Object& mass, Body& object);
+
 // S(W) by direction and height of an object that tips so, as it stands.
 physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping,
                               double friction);

@@ -68,6 +68,14 @@ class PySession {
                              : session_.update();
         }));
     }
+    py::list glance() const {
+        py::list out;
+        for (const Appeared& one : unlocked([&] { return session_.glance(); }))
+            out.append(py::make_tuple(one.middle_m, one.size_m, one.mass_kg, one.mass_error_kg,
+                                      one.stands_on, one.barrier_J, one.barrier_error_J,
+                                      one.release_J, one.mode, one.risk_J, one.unsafety_category));
+        return out;
+    }
     std::shared_ptr<Parsed> settle() {
         return parsed(*stoppable([&] { return session_.settle(); }));
     }
@@ -134,6 +142,7 @@ void bind_session(py::module_& module) {
         .def("frames", [](PySession& s) { return s.session().frames(); })
         .def("frame_bytes", [](PySession& s) { return s.session().frame_bytes(); })
         .def("update", &PySession::update)
+        .def("glance", &PySession::glance)
         .def("settle", &PySession::settle)
         .def("cancel", &PySession::cancel)
         .def("scene", &PySession::scene)

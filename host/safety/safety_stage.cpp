@@ -26,21 +26,19 @@ bool is_below_ceiling(const SolidScene& solids) {
     return ceiling > 0 && 2 * ceiling >= floor;
 }
 
-safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& objects) {
+}  // namespace
+
+safety::Surroundings surroundings_of(const SolidScene& solids, ObjectOf object_of,
+                                     TableView<PrimitiveId, physics::MassProperties> bodies) {
     safety::Surroundings s;
-    const SolidScene& solids = *parts.solids;
     s.cells = &solids.cells();
-    const ObjectOf object_of(objects.body_of_primitive);
     for (const std::int32_t p : solids.cells().primitive) s.object.push_back(object_of(p));
     for (std::size_t p = 0; p < solids.primitives(); ++p)
         s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
     s.below_ceiling = is_below_ceiling(solids);
-    for (const physics::MassProperties& b : objects.bodies)
-        s.density_kg_m3.push_back(b.density_kg_m3());
+    for (const physics::MassProperties& b : bodies) s.density_kg_m3.push_back(b.density_kg_m3());
     return s;
 }
-
-}  // namespace
 
 std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
     std::vector<safety::RiskObject> out;
@@ -153,7 +151,8 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     }
     // `all` goes on with what may be a thing.
     const std::span<const safety::RiskObject> at_risk(all.data(), objects.objects.size());
-    const safety::Surroundings around = surroundings(parts, objects);
+    const safety::Surroundings around =
+        surroundings_of(*parts.solids, objects.body_of_primitive, objects.bodies);
     out.below_ceiling = around.below_ceiling;
     for (const safety::DisturbanceKind* kind : safety::acting_kinds(options)) {
         out.disturbances.push_back(stage(std::string("field ") + kind->name, [&] {

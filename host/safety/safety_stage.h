@@ -35,6 +35,10 @@ struct SafetyStage {
 // The objects as the fields and the risk see them.
 std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects);
 
+// Where things are. solids: must stay. bodies: by primitive.
+safety::Surroundings surroundings_of(const SolidScene& solids, ObjectOf object_of,
+                                     TableView<PrimitiveId, physics::MassProperties> bodies);
+
 SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
                           const ObjectStage& objects, const ParseOptions& options,
                           StageClock& stage);

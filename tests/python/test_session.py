@@ -79,10 +79,19 @@ def test_points_come_in_place_of_frames(device, sweeps, tmp_path):
     assert labels.shape == (len(sweeps[0][0]),) and labels.dtype == np.int64 and (labels >= 0).mean() > 0.9
     ids = np.array([t.id for t in found.things])
     assert (labels == ids[found.result.point_object[:len(labels)]]).mean() > 0.98
+    assert live.glance() == []
+    rows = np.linspace(0, 0.35, 60, dtype=np.float32)
+    u, v = np.meshgrid(rows, rows)
+    crate = np.concatenate([np.stack([0.2 + u, 0.3 + v, 0.35 + 0 * u], -1), np.stack([0.2 + u, 0.3 + 0 * v, v], -1)]).reshape(-1, 3)
+    for points, pose in sweeps[::6]:  # beside all else that is seen from there
+        live.add(np.concatenate([points, ((crate - pose[:3, 3]) @ pose[:3, :3]).astype(np.float32)]), pose)
+    came, = live.glance()
+    assert isinstance(came, topple.Appeared) and np.allclose(came.middle_m, (0.375, 0.475, 0.175), atol=0.04) and came.barrier_J > came.barrier_error_J > 0
+    assert came.unsafety_category == '' and found.result.objects[came.stands_on[0]].grounded
     live.checkpoint(tmp_path / 'points')
     again = topple.Session.resume(tmp_path / 'points', device=device, disturbances=[])
     coloured = np.full(sweeps[0][0].shape, 90, np.uint8)
-    assert again.add(tuple(sweeps[0][0].T + 0.001), sweeps[0][1], coloured) == len(sweeps)
+    assert again.add(tuple(sweeps[0][0].T + 0.001), sweeps[0][1], coloured) == len(sweeps) + 3
     for call, words in ((lambda: live.add(np.zeros((4, 4), np.uint16), np.eye(4)), 'needs intrinsics'), (lambda: live.add(np.zeros((4, 4), np.float32), np.eye(4)), r'\(N, 3\)'),
                         (lambda: live.add(sweeps[0][0], None), r'shape \(4, 4\)'), (lambda: live.add(np.full((2, 3), np.nan, np.float32), np.eye(4)), 'finite'),
                         (lambda: live.add(sweeps[0][0][:0], np.eye(4)), 'no points')):

@@ -56,6 +56,19 @@ struct LiveScene {
     bool current = true;
 };
 
+// What frames that came since an update show where its scene was free: a thing that came, told
+// before a parse knows of it. It is taken to be solid within what was seen of it, and down to what
+// carries it; the next update knows better.
+struct Appeared {
+    Vec3 middle_m{}, size_m{};  // its box, upright and along the room's axes
+    double mass_kg = 0, mass_error_kg = 0;
+    std::vector<std::int32_t> stands_on;  // of the scene's objects, ascending
+    double barrier_J = 0, barrier_error_J = 0, release_J = 0;
+    std::string mode;                      // "tip" | "slide" | "none"
+    std::map<std::string, double> risk_J;  // by disturbance
+    std::string unsafety_category;         // as Object's; "": no disturbance was asked for
+};
+
 // As write_outputs() of its result, with things.json: the things and their changes.
 void write_outputs(const LiveScene& found, const std::filesystem::path& folder,
                    const OutputOptions& options = {});
@@ -122,6 +135,10 @@ class Session {
     // one before, without changes; null where there is none yet. LiveScene::current says
     // whether it knows of all frames and poses. What a parse behind throws, the next update does.
     std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget);
+    // What the latest of the frames since the last update show that was not there then, the largest
+    // first; none before the first update. It takes a few hundredths of an update's time, and may
+    // run beside one.
+    std::vector<Appeared> glance() const;
     // update(), then the result of parse() of all frames and poses that are there, bit for bit,
     // also where something has gone, which takes a parse of its own. Its things are scene()'s.
     std::shared_ptr<const ParseResult> settle();

@@ -504,6 +504,20 @@ typedef struct topple_thing {
 } topple_thing;
 int topple_session_thing(const topple_session* session, uint64_t index, topple_thing* thing,
                          topple_status* status);
+/* What the latest frames since the last update show that was not there then; some tenths of a
+ * second. `count`: how many topple_session_appeared() has then. */
+typedef struct topple_appeared {
+    size_t size;
+    double middle_m[3], size_m[3]; /* its box, along the room's axes */
+    double mass_kg, mass_error_kg;
+    int32_t stands_on; /* the first of the last update's objects that carry it */
+    double barrier_J, barrier_error_J, release_J;
+    const char* mode;              /* until the next glance, as the category */
+    const char* unsafety_category; /* at the worse end of errors */
+} topple_appeared;
+int topple_session_glance(topple_session* session, uint64_t* count, topple_status* status);
+int topple_session_appeared(const topple_session* session, uint64_t index,
+                            topple_appeared* appeared, topple_status* status);
 /* The thing that each pixel of frame `number` shows, row by row; -1: nothing that is known. */
 int topple_session_label(const topple_session* session, const topple_frames* frames,
                          uint64_t number, int64_t* things, topple_status* status);

@@ -30,12 +30,12 @@ from ._frames import Frames as _Frames
 from ._options import named as _named, option as _option, options as _options_of
 from ._program import generate
 from ._removal import RemovalOrder
-from ._session import LiveScene, Session, Thing
+from ._session import Appeared, LiveScene, Session, Thing
 from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Hold, Landscape, Object, Overturning, PossibleThing, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'Alignment', 'Alternative', 'AppliedCorrection', 'ComparedThing', 'Comparison', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Hold', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
+__all__ = ['Advice', 'Alignment', 'Alternative', 'Appeared', 'AppliedCorrection', 'ComparedThing', 'Comparison', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Hold', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
            'Session', 'Support', 'Thing', 'Unheld', 'Why', '__version__', 'compare', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()

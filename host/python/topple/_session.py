@@ -24,6 +24,21 @@ class Thing(NamedTuple):
     moved_m: float  # how far, where it moved
 
 
+class Appeared(NamedTuple):
+    """What Session.glance() finds: a thing that came, as far as it was seen, and down to what carries it."""
+    middle_m: "tuple[float, float, float]"  # of its box, upright and along the room's axes
+    size_m: "tuple[float, float, float]"
+    mass_kg: float
+    mass_error_kg: float
+    stands_on: "list[int]"  # objects of scene.result
+    barrier_J: float
+    barrier_error_J: float
+    release_J: float
+    mode: str  # "tip", "slide", "none"
+    risk_J: "dict[str, float]"  # by disturbance
+    unsafety_category: str  # at the worse end of errors; "": no disturbance was asked for
+
+
 class LiveScene(NamedTuple):
     """What an update of a Session has found."""
     result: "Result"
@@ -131,6 +146,11 @@ class Session:
             except (TypeError, ValueError, OverflowError):
                 raise usage(f'budget_ms: expected milliseconds, 0 or more, not {budget_ms!r}') from None
         return self._described(self._begun().update(budget_ms))
+
+    def glance(self):
+        """What the latest frames since the last update() show that was not there then: a list of Appeared, the largest first; in some tenths
+        of a second, also while another thread is in update(). Empty before the first."""
+        return [Appeared(tuple(middle), tuple(size), *more) for middle, size, *more in self._session.glance()] if self._session else []
 
     def settle(self):
         """The Result of parse() of all frames and poses that are there, bit for bit, also of what has gone; an update() comes first."""

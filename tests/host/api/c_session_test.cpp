@@ -117,7 +117,7 @@ TEST_F(CApi, ASessionIsThatOfCpp) {
 TEST_F(CApi, ASessionOfPointsIsThatOfCpp) {
     PointCloud points;
     Random random(3);
-    for (int n = 0; n < 3000; ++n) {
+    for (int n = 0; n < 60000; ++n) {
         // On the sides of a room, and of a box on its floor.
         Vec3 way{random.normal(), random.normal(), random.normal()};
         const double largest =
@@ -154,6 +154,40 @@ TEST_F(CApi, ASessionOfPointsIsThatOfCpp) {
     other.add(CloudView(points), pose);
     const auto expected = other.update();
     ASSERT_EQ(things, expected->things.size());
+    // A second box comes beside the first one.
+    PointCloud more = points;
+    for (int n = 0; n < 3000; ++n) {
+        const double u = random.uniform(0, 0.4), v = random.uniform(0, 0.4);
+        const bool top = n % 2;
+        more.x.push_back(static_cast<float>(0.8 + u));
+        more.y.push_back(static_cast<float>(top ? 0.8 + v : 0.8));
+        more.z.push_back(static_cast<float>(top ? -1.1 : -1.1 - v));
+    }
+    cloud.x = more.x.data();
+    cloud.y = more.y.data();
+    cloud.z = more.z.data();
+    cloud.count = more.size();
+    Mat4 aside = pose;
+    aside[3] = 1e-4;
+    ASSERT_EQ(topple_session_add_points(session, &cloud, aside.data(), nullptr, &status),
+              TOPPLE_OK);
+    other.add(CloudView(more), aside);
+    std::uint64_t count = 7;
+    ASSERT_EQ(topple_session_glance(session, &count, &status), TOPPLE_OK) << status.message;
+    const std::vector<Appeared> glanced = other.glance();
+    ASSERT_EQ(count, glanced.size());
+    topple_appeared appeared{};
+    appeared.size = sizeof(appeared);
+    EXPECT_EQ(topple_session_appeared(session, count, &appeared, &status), TOPPLE_ERROR_USAGE);
+    ASSERT_EQ(count, 1u);
+    ASSERT_EQ(topple_session_appeared(session, 0, &appeared, &status), TOPPLE_OK);
+    EXPECT_EQ(appeared.mass_kg, glanced[0].mass_kg);
+    EXPECT_EQ(appeared.barrier_J, glanced[0].barrier_J);
+    EXPECT_EQ(appeared.mode, glanced[0].mode);
+    cloud.x = points.x.data();
+    cloud.y = points.y.data();
+    cloud.z = points.z.data();
+    cloud.count = points.size();
     std::vector<std::int64_t> labels(points.size());
     ASSERT_EQ(topple_session_label_points(session, &cloud, pose.data(), labels.data(), &status),
               TOPPLE_OK);

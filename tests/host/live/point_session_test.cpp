@@ -177,6 +177,44 @@ TEST_F(PointSessions, TellWhatHasGoneAndKnowThingsAgain) {
         << "settled, what has gone is there";
 }
 
+// A carton comes onto a table: what it weighs and bears is told before an update knows of it.
+TEST_F(PointSessions, AGlanceTellsWhatCame) {
+    SessionOptions options = quick();
+    options.parse.disturbances = {"human"};
+    Session session = Session::of_points(options);
+    EXPECT_TRUE(session.glance().empty());
+    for (std::size_t n = 0; n < 5; ++n) session.add(sweep(without(room(), carton), n), pose(n));
+    EXPECT_TRUE(session.glance().empty()) << "nothing is known before an update";
+    session.update();
+    session.add(sweep(without(room(), carton), 5), pose(5));
+    EXPECT_TRUE(session.glance().empty()) << "nothing came";
+    for (std::size_t n = 6; n < 9; ++n) session.add(sweep(room(), n), pose(n));
+    const std::vector<Appeared> found = session.glance();
+    ASSERT_EQ(found.size(), 1u);
+    const Appeared& one = found.front();
+    // 0.4 x 0.4 x 0.36 m at 700 kg/m3; of what was seen from one side its rear is not there.
+    EXPECT_NEAR(one.middle_m[0], 3.0, 0.1);
+    EXPECT_NEAR(one.middle_m[1], 1.5, 0.1);
+    EXPECT_NEAR(one.middle_m[2], 0.74 + 0.18, 0.04);
+    EXPECT_NEAR(one.size_m[2], 0.36, 0.05);
+    EXPECT_NEAR(one.mass_kg, 700 * 0.4 * 0.4 * 0.36, 0.3 * 40);
+    // m g (sqrt(h^2 + b^2) - h) over its edge.
+    const double barrier = one.mass_kg * 9.81 * (std::hypot(0.18, 0.2) - 0.18);
+    EXPECT_NEAR(one.barrier_J, barrier, 0.4 * barrier);
+    EXPECT_GT(one.barrier_error_J, 0);
+    EXPECT_EQ(one.risk_J.size(), 1u);
+    EXPECT_FALSE(one.unsafety_category.empty());
+    ASSERT_EQ(one.stands_on.size(), 1u);
+    const auto& objects = session.scene()->result->scene.objects;
+    const Object& below = objects[static_cast<std::size_t>(one.stands_on.front())];
+    EXPECT_NEAR(below.box_middle_m[0], 3.0, 0.15) << "the table";
+    // The update knows of it, and a glance then of nothing.
+    const auto after = session.update();
+    const std::int64_t id = thing_at(session, {2.81, 1.5, 0.9});
+    EXPECT_GT(id, 0);
+    EXPECT_TRUE(session.glance().empty());
+}
+
 TEST_F(PointSessions, GoOnFromACheckpoint) {
     const auto file = path("points.checkpoint");
     Session session = Session::of_points(quick());
@@ -259,6 +297,15 @@ TEST(Projection, LooksAllAround) {
     EXPECT_EQ(nearest[5 * by.width() + by.width() - 1], 1000);
     EXPECT_EQ(nearest[5 * by.width() + 2], 2000);
     EXPECT_EQ(nearest[7], 0);
+    // Rows of a sensor with gaps of one, and of two.
+    for (std::size_t p = 0; p < stored.size(); ++p)
+        if (const std::size_t row = p / by.width(); row < 40 ? row % 2 : row % 3) stored[p] = 0;
+    const auto sparse = by.nearest_around(stored);
+    EXPECT_EQ(sparse[21 * by.width() + 41], 2000);
+    EXPECT_EQ(sparse[22 * by.width() + 41], 2000);
+    std::ranges::fill(stored, 0);
+    stored[20 * by.width() + 40] = stored[20 * by.width() + 41] = 2000;
+    EXPECT_EQ(by.nearest_around(stored)[20 * by.width() + 41], 0);
 }
 
 }  // namespace
