@@ -63,6 +63,19 @@ void print_changes(const LiveScene& found, double took_s) {
     std::fflush(stdout);
 }
 
+// Before an update knows of it.
+void print_glance(const Session& session) {
+    for (const Appeared& one : session.glance()) {
+        const auto& [x, y, z] = one.middle_m;
+        const auto& [wide, deep, high] = one.size_m;
+        print("  seen: %.2f x %.2f x %.2f m at (%.2f, %.2f, %.2f), about %.2g kg", wide, deep, high,
+              x, y, z, one.mass_kg);
+        if (!one.unsafety_category.empty()) print(", %s", one.unsafety_category.c_str());
+        print("\n");
+    }
+    std::fflush(stdout);
+}
+
 // What came and is not in the output, at the end; empty: nothing.
 std::string missing_from(const live::GrowingFolder& folder, const std::string& out) {
     if (folder.damaged() > 0)
@@ -113,6 +126,7 @@ int run(LiveArguments& a) {
                 if (const auto intrinsics = folder.intrinsics())
                     session = std::make_unique<Session>(*intrinsics, std::nullopt, a.options);
             if (session && folder.read(*session, reading)) {
+                if (!a.quiet) print_glance(*session);
                 const auto start = Clock::now();
                 const auto found = session->update();
                 write_outputs(*found, a.out, output);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "live/checkpoint.h"
+#include "live/frame_store.h"
 #include "live/known_things.h"
 #include "live/projection.h"
 #include "live/seen_through.h"
@@ -20,8 +20,6 @@
 #include "topple/session.h"
 
 namespace topple::live {
-
-using Frames = std::map<FrameId, PosedFrame>;
 
 // What the frames of a session are, and what becomes of them.
 class ScanKind {

@@ -17,6 +17,7 @@
 #include "device/cancelling.h"
 #include "live/appeared.h"
 #include "live/checkpoint.h"
+#include "live/frame_store.h"
 #include "live/scan_kind.h"
 #include "live/seen_through.h"
 #include "points/caller_frames.h"
@@ -45,10 +46,6 @@ std::uint64_t number_of(FrameId frame) {
     return Random(frame).bits();
 }
 
-std::string name_of(FrameId frame) {
-    return "frame " + std::to_string(frame);
-}
-
 // source: what messages call it.
 FramesView one_frame(const Intrinsics& k, const std::optional<Intrinsics>& colour,
                      const FrameView& frame, const Mat4& pose, std::string source) {
@@ -61,17 +58,6 @@ FramesView one_frame(const Intrinsics& k, const std::optional<Intrinsics>& colou
     return out;
 }
 
-// How far apart two cameras are: 1 for 5 cm, or for 5 degrees.
-double apart(const Mat4& a, const Mat4& b) {
-    constexpr double metres = 0.05, radians = 5 * M_PI / 180;
-    double trace = 0, square = 0;
-    for (std::size_t r = 0; r < 3; ++r) {
-        for (std::size_t c = 0; c < 3; ++c) trace += a[4 * r + c] * b[4 * r + c];
-        square += (a[4 * r + 3] - b[4 * r + 3]) * (a[4 * r + 3] - b[4 * r + 3]);
-    }
-    return std::sqrt(square) / metres + std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0)) / radians;
-}
-
 }  // namespace
 
 class Session::State {
@@ -80,84 +66,45 @@ class Session::State {
         : kind_(live::scan_kind(from)),
           depth_(from.depth),
           colour_(from.colour),
-          options_(std::move(options)),
-          frames_(std::move(from.frames)),
+          options_(checked(std::move(options))),
+          frames_(std::move(from.frames), options_.max_frame_bytes,
+                  [this](const live::KeptFrame& frame) { return kind_->image(frame); }),
           remembered_(std::move(from.remembered)) {
-        check_options(options_.parse);
-        if (!options_.parse.cache_file.empty())
-            throw Error(ErrorKind::usage,
-                        "a session keeps no cache_file: leave it empty in its options");
-        if (options_.max_frame_bytes == 0)
-            throw Error(ErrorKind::usage, "max_frame_bytes is 0: a session needs room for frames");
-        if (!options_.parse.device) options_.parse.device = device::open_device("auto");
-        options_.parse.coordinates = true;  // things are told by them
         options_.parse.cancelled = [this, asked = std::move(options_.parse.cancelled)] {
             return cancelling_ || (asked && asked());
         };
         threads_ = options_.parse.device->threads().threads();
-        for (auto& [frame, kept] : frames_.kept) {
-            kept.image = std::make_shared<const DepthFrame>(kind_->image(*kept.frame));
-            bytes_ += bytes_of(kept);
-        }
-        changes_ = frames_.kept.size();
-        keep_to_limit();
     }
 
     FrameId add(const FrameView& view, const Mat4& pose) {
-        const FrameId next = frames_.next;  // of the producer alone, as is `last`
-        const FramesView given = one_frame(camera(), colour_, view, pose, name_of(next));
+        const std::string name = live::name_of(frames_.next());
+        const FramesView given = one_frame(camera(), colour_, view, pose, name);
         // As parse() takes it: checked, its colours as the depth camera sees them.
         const DepthFrame frame = CallerFrames(given).load_coloured(0);
         if (std::ranges::all_of(frame.depth, [](std::uint16_t d) { return d == 0; }))
-            throw Error(ErrorKind::input, name_of(next) + ": it has no readings");
+            throw Error(ErrorKind::input, name + ": it has no readings");
         Checksum sum;
         sum.add(frame.depth.data(), frame.depth.size() * sizeof(std::uint16_t));
-        return keep(sum, frame.camera_to_world, pose,
-                    [&] { return std::make_shared<const live::KeptFrame>(frame, depth_->width); });
+        return frames_.add(sum, frame.camera_to_world, pose, [&] {
+            return std::make_shared<const live::KeptFrame>(frame, depth_->width);
+        });
     }
     FrameId add(const CloudView& view, const Mat4& sensor_to_world) {
         if (depth_)
             throw Error(ErrorKind::usage,
                         "session: it is of depth frames; begin one of points (Session::of_points)");
-        const PointCloud points = points_of(view, name_of(frames_.next));
-        const Mat4 pose = rigid(sensor_to_world, name_of(frames_.next) + ": sensor_to_world");
+        const std::string name = live::name_of(frames_.next());
+        const PointCloud points = points_of(view, name);
+        const Mat4 pose = rigid(sensor_to_world, name + ": sensor_to_world");
         Checksum sum;
         for (const std::vector<float>* axis : {&points.x, &points.y, &points.z})
             sum.add(axis->data(), axis->size() * sizeof(float));
-        return keep(sum, pose, pose,
-                    [&] { return std::make_shared<const live::KeptFrame>(points); });
-    }
-    void correct(const std::map<FrameId, Mat4>& poses) {
-        for (auto [frame, pose] : poses) {
-            if (frame >= frames_.next) no_such(frame);
-            if (const auto fault = io::make_rigid(pose))
-                throw Error(ErrorKind::input, name_of(frame) + ": camera_to_world: " + *fault);
-        }
-        const std::lock_guard lock(frames_mutex_);
-        for (const auto& [frame, pose] : poses) {
-            const auto kept = frames_.kept.find(frame);
-            if (kept == frames_.kept.end() || kept->second.pose == pose) continue;
-            kept->second.pose = pose;
-            ++changes_;
-        }
-    }
-    void forget(FrameId frame) {
-        const std::lock_guard lock(frames_mutex_);
-        const auto kept = frames_.kept.find(frame);
-        if (kept == frames_.kept.end()) no_such(frame);
-        drop(kept);
+        return frames_.add(sum, pose, pose,
+                           [&] { return std::make_shared<const live::KeptFrame>(points); });
     }
     const std::optional<Intrinsics>& intrinsics() const { return depth_; }
-    std::vector<FrameId> frames() const {
-        const std::lock_guard lock(frames_mutex_);
-        std::vector<FrameId> out;
-        for (const auto& [frame, kept] : frames_.kept) out.push_back(frame);
-        return out;
-    }
-    std::uint64_t frame_bytes() const {
-        const std::lock_guard lock(frames_mutex_);
-        return bytes_;
-    }
+    live::FrameStore& frames() { return frames_; }
+    const live::FrameStore& frames() const { return frames_; }
 
     std::shared_ptr<const LiveScene> update() {
         const std::lock_guard one_at_a_time(update_mutex_);
@@ -167,7 +114,7 @@ class Session::State {
     }
     std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget) {
         const std::lock_guard one_at_a_time(update_mutex_);
-        if (frames().empty()) no_frames();
+        static_cast<void>(frames_.snapshot());  // throws where there are none
         begin_behind();
         wait_behind(Clock::now() + std::clamp(budget, no_budget, most_budget));
         auto out = told();  // before the next one is
@@ -186,7 +133,7 @@ class Session::State {
         // An update may be at work with the other one; results are the same on any.
         const std::lock_guard one_at_a_time(glance_mutex_);
         if (!glancing_) glancing_ = device::open_device("native", threads_);
-        const auto [frames, changes] = snapshot();
+        const auto [frames, changes] = frames_.snapshot();
         std::vector<Vec3> places;
         std::size_t glanced = 0;
         for (auto at = frames.rbegin(); at != frames.rend() && glanced < most_glanced; ++at) {
@@ -219,8 +166,7 @@ class Session::State {
     live::Checkpoint checkpoint() const {
         // First what is remembered: frames may be newer than an update, but never older.
         live::Checkpoint out{depth_, colour_, {}, remembered()};
-        const std::lock_guard lock(frames_mutex_);
-        out.frames = frames_;
+        out.frames = frames_.all();
         return out;
     }
     std::shared_ptr<const LiveScene> scene() const {
@@ -241,6 +187,18 @@ class Session::State {
 
   private:
     using Frames = live::Frames;
+
+    static SessionOptions checked(SessionOptions options) {
+        check_options(options.parse);
+        if (!options.parse.cache_file.empty())
+            throw Error(ErrorKind::usage,
+                        "a session keeps no cache_file: leave it empty in its options");
+        if (options.max_frame_bytes == 0)
+            throw Error(ErrorKind::usage, "max_frame_bytes is 0: a session needs room for frames");
+        if (!options.parse.device) options.parse.device = device::open_device("auto");
+        options.parse.coordinates = true;  // things are told by them
+        return options;
+    }
 
     struct Known {
         std::shared_ptr<const LiveScene> scene;
@@ -286,63 +244,6 @@ class Session::State {
         out.blue.assign(view.blue.begin(), view.blue.end());
         return out;
     }
-    // Unless it is the frame before once more. sum: of its readings. rigid, given: its pose.
-    template <class Make>
-    FrameId keep(Checksum& sum, const Mat4& rigid, const Mat4& given, const Make& kept_frame) {
-        sum.add(rigid.data(), sizeof(rigid));
-        if (sum.value() == frames_.last)
-            throw Error(ErrorKind::input,
-                        name_of(frames_.next) + ": it is the frame before once more");
-        live::PosedFrame kept{kept_frame(), given};
-        kept.image = std::make_shared<const DepthFrame>(kind_->image(*kept.frame));
-        const std::lock_guard lock(frames_mutex_);
-        frames_.last = sum.value();
-        bytes_ += bytes_of(kept);
-        frames_.kept[frames_.next] = std::move(kept);
-        ++changes_;
-        keep_to_limit();
-        return frames_.next++;
-    }
-
-    [[noreturn]] static void no_such(FrameId frame) {
-        throw Error(ErrorKind::usage, "session: there is no " + name_of(frame));
-    }
-    [[noreturn]] static void no_frames() {
-        throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
-    }
-    void drop(Frames::iterator kept) {
-        bytes_ -= bytes_of(kept->second);
-        frames_.kept.erase(kept);
-        ++changes_;
-    }
-    static std::uint64_t bytes_of(const live::PosedFrame& kept) {
-        return kept.frame->bytes() + kept.image->depth.size() * sizeof(std::uint16_t);
-    }
-    static DepthFrame posed_image(const live::PosedFrame& kept) {
-        DepthFrame out = *kept.image;
-        out.camera_to_world = kept.pose;
-        return out;
-    }
-    void keep_to_limit() {
-        while (bytes_ > options_.max_frame_bytes && frames_.kept.size() > 1) drop_least_missed();
-    }
-    // The earlier of the two whose cameras are nearest to one another: what is new stays.
-    void drop_least_missed() {
-        auto least = frames_.kept.begin();
-        double nearest = INFINITY;
-        for (auto at = least, next = std::next(at); next != frames_.kept.end(); ++at, ++next) {
-            const double far = apart(at->second.pose, next->second.pose);
-            if (far >= nearest) continue;
-            nearest = far;
-            least = at;
-        }
-        drop(least);
-    }
-    std::pair<Frames, std::uint64_t> snapshot() const {
-        const std::lock_guard lock(frames_mutex_);
-        if (frames_.kept.empty()) no_frames();
-        return {frames_.kept, changes_};
-    }
     // By pixel of its image: whether frames of an update saw through what it shows.
     std::vector<bool> came_in(const live::PosedFrame& frame, const Frames& frames,
                               const std::vector<FrameId>& parsed) const {
@@ -352,10 +253,10 @@ class Session::State {
             const auto kept = frames.find(*id);
             if (kept != frames.end() &&
                 live::look_alike(kind_->projection(), frame.pose, kept->second.pose))
-                seen.push_back(posed_image(kept->second));
+                seen.push_back(live::posed_image(kept->second));
         }
         std::ranges::reverse(seen);
-        seen.push_back(posed_image(frame));
+        seen.push_back(live::posed_image(frame));
         const std::size_t last = seen.size() - 1;
         const live::Looks looks(kind_->projection(), seen, glancing_->threads());
         const auto came = looks.seen_through(
@@ -366,17 +267,13 @@ class Session::State {
                 pixel.through_of_fitting > 0;
         return out;
     }
-    std::uint64_t changes() const {
-        const std::lock_guard lock(frames_mutex_);
-        return changes_;
-    }
     live::Remembered remembered() const {
         const std::lock_guard lock(scene_mutex_);
         return remembered_;
     }
     // Parses what is there, where that has not been done. One at a time.
     void find() {
-        auto [frames, changes] = snapshot();
+        auto [frames, changes] = frames_.snapshot();
         if (changes == parsed_changes_) return;
         live::Remembered remembered = this->remembered();
         const Passed passed = passed_through(frames, remembered.poses);
@@ -408,7 +305,7 @@ class Session::State {
     }
     // The scene that is there; from the second time on without what changed.
     std::shared_ptr<const LiveScene> told() {
-        const bool current = changes() == parsed_changes_;
+        const bool current = frames_.changes() == parsed_changes_;
         const std::lock_guard lock(scene_mutex_);
         if (!scene_) return nullptr;
         auto given = std::make_shared<LiveScene>(*scene_);
@@ -421,7 +318,7 @@ class Session::State {
         return scene_;
     }
     void begin_behind() {
-        if (behind_.valid() || changes() == parsed_changes_) return;
+        if (behind_.valid() || frames_.changes() == parsed_changes_) return;
         behind_ = std::async(std::launch::async, [this] { find(); });
     }
     // Until what goes on behind has ended, or that time comes.
@@ -451,7 +348,7 @@ class Session::State {
             old += frame < first_new;
             const auto parsed = poses.find(frame);
             earlier.push_back(parsed == poses.end() ? std::nullopt : std::optional(parsed->second));
-            out.seen.push_back(posed_image(kept));
+            out.seen.push_back(live::posed_image(kept));
         }
         const live::Looks looks(kind_->projection(), out.seen, options_.parse.device->threads(),
                                 std::move(earlier));
@@ -495,9 +392,7 @@ class Session::State {
     SessionOptions options_;
     unsigned threads_ = 0;
 
-    mutable std::mutex frames_mutex_;
-    live::KeptFrames frames_;
-    std::uint64_t bytes_ = 0, changes_ = 0;
+    live::FrameStore frames_;
 
     // Of the updates, and of the parse that goes on behind, which only they begin and wait for.
     std::mutex update_mutex_;
@@ -540,19 +435,19 @@ FrameId Session::add(const CloudView& points, const Mat4& sensor_to_world) {
     return state_->add(points, sensor_to_world);
 }
 void Session::correct(const std::map<FrameId, Mat4>& camera_to_world) {
-    state_->correct(camera_to_world);
+    state_->frames().correct(camera_to_world);
 }
 void Session::forget(FrameId frame) {
-    state_->forget(frame);
+    state_->frames().forget(frame);
 }
 const std::optional<Intrinsics>& Session::intrinsics() const {
     return state_->intrinsics();
 }
 std::vector<FrameId> Session::frames() const {
-    return state_->frames();
+    return state_->frames().ids();
 }
 std::uint64_t Session::frame_bytes() const {
-    return state_->frame_bytes();
+    return state_->frames().bytes();
 }
 std::shared_ptr<const LiveScene> Session::update() {
     return state_->update();
