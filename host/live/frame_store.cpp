@@ -87,6 +87,7 @@ void FrameStore::forget(FrameId frame) {
     const std::lock_guard lock(mutex_);
     const auto kept = frames_.kept.find(frame);
     if (kept == frames_.kept.end()) no_such(frame);
+    if (frame + 1 == frames_.next) frames_.last = {};  // it may come once more
     drop(kept);
 }
 

@@ -4,7 +4,6 @@
 
 #include "core/solid_scene.h"
 #include "core/sort_unique.h"
-#include "device/devices.h"
 #include "live/appeared.h"
 #include "objects/body_maker.h"
 #include "objects/floor_heights.h"
@@ -162,13 +161,14 @@ std::vector<Appeared> judge_bodies(device::Device& device, const ParseResult& sc
     const safety::Surroundings around =
         surroundings_of(all, stage.object_of_primitive, stage.bodies);
     std::vector<safety::Category> category(at_risk.size());
-    std::vector<std::map<std::string, double>> risk_J(at_risk.size());
+    std::vector<std::map<std::string, double>> risk_J(at_risk.size()), fall_chance = risk_J;
     for (const safety::DisturbanceKind* kind : safety::acting_kinds(options)) {
         const safety::Disturbance field = kind->field(device, around, at_risk, options);
         const std::vector<safety::Risk> risks = safety::risk(field, at_risk),
                                         most = safety::risk_if(field, weaker);
         for (std::size_t o = 0; o < at_risk.size(); ++o) {
             risk_J[o][kind->name] = risks[o].mean_J;
+            fall_chance[o][kind->name] = risks[o].chance;
             category[o] = std::max(
                 {category[o], safety::category(risks[o], 1), safety::category(most[o], 1)});
         }
@@ -190,6 +190,7 @@ std::vector<Appeared> judge_bodies(device::Device& device, const ParseResult& sc
         to.release_J = body.instability.release_J;
         to.mode = physics::to_string(body.instability.mode);
         to.risk_J = std::move(risk_J[n + 1]);
+        to.fall_chance = std::move(fall_chance[n + 1]);
         if (!to.risk_J.empty()) to.unsafety_category = safety::to_string(category[n + 1]);
         out.push_back(std::move(to));
     }

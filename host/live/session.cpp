@@ -23,6 +23,7 @@
 #include "points/caller_frames.h"
 #include "points/caller_points.h"
 #include "points/formats/rigid_pose.h"
+#include "safety/disturbances.h"
 #include "topple/device.h"
 #include "topple/error.h"
 #include "topple/frame_labels.h"
@@ -190,6 +191,7 @@ class Session::State {
 
     static SessionOptions checked(SessionOptions options) {
         check_options(options.parse);
+        static_cast<void>(safety::acting_kinds(options.parse));  // throws for what is none
         if (!options.parse.cache_file.empty())
             throw Error(ErrorKind::usage,
                         "a session keeps no cache_file: leave it empty in its options");

@@ -73,8 +73,14 @@ class PySession {
         for (const Appeared& one : unlocked([&] { return session_.glance(); }))
             out.append(py::make_tuple(one.middle_m, one.size_m, one.mass_kg, one.mass_error_kg,
                                       one.stands_on, one.barrier_J, one.barrier_error_J,
-                                      one.release_J, one.mode, one.risk_J, one.unsafety_category));
+                                      one.release_J, one.mode, one.risk_J, one.fall_chance,
+                                      one.unsafety_category));
         return out;
+    }
+    void write(const std::string& folder) const {
+        const auto found = session_.scene();
+        if (!found) throw Error(ErrorKind::usage, "session: nothing is known before update()");
+        unlocked([&] { write_outputs(*found, folder); });
     }
     std::shared_ptr<Parsed> settle() {
         return parsed(*stoppable([&] { return session_.settle(); }));
@@ -143,6 +149,7 @@ void bind_session(py::module_& module) {
         .def("frame_bytes", [](PySession& s) { return s.session().frame_bytes(); })
         .def("update", &PySession::update)
         .def("glance", &PySession::glance)
+        .def("write", &PySession::write)
         .def("settle", &PySession::settle)
         .def("cancel", &PySession::cancel)
         .def("scene", &PySession::scene)

@@ -88,10 +88,17 @@ def test_points_come_in_place_of_frames(device, sweeps, tmp_path):
     came, = live.glance()
     assert isinstance(came, topple.Appeared) and np.allclose(came.middle_m, (0.375, 0.475, 0.175), atol=0.04) and came.barrier_J > came.barrier_error_J > 0
     assert came.unsafety_category == '' and found.result.objects[came.stands_on[0]].grounded
+    assert live.scene.things[came.stands_on[0]].id == 0 and came.fall_chance == {}
+    live.write(tmp_path / 'out')
+    assert {'report.html', 'things.json', 'scene.json'} <= {path.name for path in (tmp_path / 'out').iterdir()}
+    with pytest.raises(topple.Error, match='a dict of poses'):
+        live.correct([np.eye(4)])
+    live.forget(live.add(sweeps[1][0], sweeps[0][1]))
+    live.forget(live.add(sweeps[1][0], sweeps[0][1]))  # it may come once more
     live.checkpoint(tmp_path / 'points')
     again = topple.Session.resume(tmp_path / 'points', device=device, disturbances=[])
     coloured = np.full(sweeps[0][0].shape, 90, np.uint8)
-    assert again.add(tuple(sweeps[0][0].T + 0.001), sweeps[0][1], coloured) == len(sweeps) + 3
+    assert again.add(tuple(sweeps[0][0].T + 0.001), sweeps[0][1], coloured) == len(sweeps) + 5
     for call, words in ((lambda: live.add(np.zeros((4, 4), np.uint16), np.eye(4)), 'needs intrinsics'), (lambda: live.add(np.zeros((4, 4), np.float32), np.eye(4)), r'\(N, 3\)'),
                         (lambda: live.add(sweeps[0][0], None), r'shape \(4, 4\)'), (lambda: live.add(np.full((2, 3), np.nan, np.float32), np.eye(4)), 'finite'),
                         (lambda: live.add(sweeps[0][0][:0], np.eye(4)), 'no points')):
@@ -151,6 +158,8 @@ def test_what_is_no_frame_is_refused(device, depth_frames):
         with pytest.raises(topple.Error, match=words):
             call()
     assert live.frames == [0]
+    with pytest.raises(topple.Error, match='humans'):
+        topple.Session(disturbances=['humans']).add(np.ones((9, 3), np.float32), POSES[0])
     with pytest.raises(topple.Error, match='max_frame_bytes'):
         session(device, max_frame_bytes=0).add(depth_frames[0], POSES[0])
 

@@ -64,9 +64,9 @@ struct Appeared {
     double mass_kg = 0, mass_error_kg = 0;
     std::vector<std::int32_t> stands_on;  // of the scene's objects, ascending
     double barrier_J = 0, barrier_error_J = 0, release_J = 0;
-    std::string mode;                      // "tip" | "slide" | "none"
-    std::map<std::string, double> risk_J;  // by disturbance
-    std::string unsafety_category;         // as Object's; "": no disturbance was asked for
+    std::string mode;                                   // "tip" | "slide" | "none"
+    std::map<std::string, double> risk_J, fall_chance;  // by disturbance, as Object's
+    std::string unsafety_category;  // as Object's; "": no disturbance was asked for
 };
 
 // As write_outputs() of its result, with things.json: the things and their changes.

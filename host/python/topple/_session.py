@@ -17,7 +17,8 @@ from .stages import camera
 
 
 class Thing(NamedTuple):
-    """What is the same from update to update of a Session."""
+    """What is the same from update to update of a Session: id (0: the building), object (its number in LiveScene.result, -1: it is lost or gone),
+    change since the update before, and moved_m, metres."""
     id: int  # the same as long as it is the same thing; 0: the building
     object: int  # id in LiveScene.result; -1: it is lost or gone
     change: str  # since the update before: "none", "found" (not seen or told apart before), "came", "moved", "changed" (what it stands on, its category), "lost" (not told apart any more), "gone"
@@ -25,9 +26,12 @@ class Thing(NamedTuple):
 
 
 class Appeared(NamedTuple):
-    """What Session.glance() finds: a thing that came, as far as it was seen, and down to what carries it."""
-    middle_m: "tuple[float, float, float]"  # of its box, upright and along the room's axes
-    size_m: "tuple[float, float, float]"
+    """What Session.glance() finds: a thing that came, as far as it was seen, and down to what carries it. middle_m, size_m: of its box, upright and
+    along the room's axes, metres. mass_kg and its standard error. stands_on: numbers of objects of scene.result, of which scene.things[number].id
+    is the thing. barrier_J, its standard error, release_J, mode, risk_J and fall_chance, by disturbance, as those of an Object. unsafety_category: as
+    an Object's, but at the worse end of errors."""
+    middle_m: "NDArray[np.float64]"  # (3,)
+    size_m: "NDArray[np.float64]"  # (3,)
     mass_kg: float
     mass_error_kg: float
     stands_on: "list[int]"  # objects of scene.result
@@ -36,11 +40,13 @@ class Appeared(NamedTuple):
     release_J: float
     mode: str  # "tip", "slide", "none"
     risk_J: "dict[str, float]"  # by disturbance
+    fall_chance: "dict[str, float]"
     unsafety_category: str  # at the worse end of errors; "": no disturbance was asked for
 
 
 class LiveScene(NamedTuple):
-    """What an update of a Session has found."""
+    """What an update of a Session has found: its result; things, by the result's objects, then those that are lost or gone; the frames that it was
+    parsed from; number of the parse; current, whether these, and their poses, were all that there was."""
     result: "Result"
     things: "list[Thing]"  # by objects of the result, then what is lost or gone
     frames: "list[int]"  # that it was parsed from
@@ -114,6 +120,8 @@ class Session:
 
     def correct(self, camera_to_world):
         """After a loop closure: a dict of the poses, (4, 4), that are others now, by frame."""
+        if not isinstance(camera_to_world, Mapping):
+            raise usage('correct: expected a dict of poses by the numbers of their frames')
         frames = [self._number(frame) for frame in camera_to_world]
         if frames:
             poses = [self._pose(pose, frame) for frame, pose in zip(frames, camera_to_world.values())]
@@ -150,12 +158,17 @@ class Session:
     def glance(self):
         """What the latest frames since the last update() show that was not there then: a list of Appeared, the largest first; in some tenths
         of a second, also while another thread is in update(). Empty before the first."""
-        return [Appeared(tuple(middle), tuple(size), *more) for middle, size, *more in self._session.glance()] if self._session else []
+        return [Appeared(np.array(middle), np.array(size), *more) for middle, size, *more in self._session.glance()] if self._session else []
 
     def settle(self):
-        """The Result of parse() of all frames and poses that are there, bit for bit, also of what has gone; an update() comes first."""
+        """The Result of parse() of all frames and poses that are there, bit for bit, also of what has gone, which takes a parse of its own;
+        an update() comes first."""
         from . import Result
         return Result(self._begun().settle(), None)
+
+    def write(self, folder):
+        """Writes what `topple live` does of the scene of the last update: outputs with a report, and things.json."""
+        self._begun().write(os.fspath(folder))
 
     def cancel(self):
         """From any thread: ends the update that is at work, or goes on behind, as cancelled. The scene before stays."""
