@@ -103,10 +103,19 @@ std::uint64_t FrameStore::bytes() const {
     return bytes_;
 }
 
-std::pair<Frames, std::uint64_t> FrameStore::snapshot() const {
-    const std::lock_guard lock(mutex_);
+void FrameStore::need_some() const {
     if (frames_.kept.empty())
         throw Error(ErrorKind::input, "session: there are no frames yet; add some first");
+}
+
+void FrameStore::need_any() const {
+    const std::lock_guard lock(mutex_);
+    need_some();
+}
+
+std::pair<Frames, std::uint64_t> FrameStore::snapshot() const {
+    const std::lock_guard lock(mutex_);
+    need_some();
     return {frames_.kept, changes_};
 }
 

@@ -38,12 +38,15 @@ class FrameStore {
     std::vector<FrameId> ids() const;
     std::uint64_t bytes() const;
 
-    // All, and how many changes there were before. Throws Error(input) where there are none.
+    // Throws Error(input) where there are none.
+    void need_any() const;
+    // All, and how many changes there were before. Throws as need_any() does.
     std::pair<Frames, std::uint64_t> snapshot() const;
     std::uint64_t changes() const;
     KeptFrames all() const;
 
   private:
+    void need_some() const;  // as need_any(), locked
     void drop(Frames::iterator kept);
     void keep_to_limit();
     void drop_least_missed();

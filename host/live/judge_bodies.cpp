@@ -140,9 +140,7 @@ std::vector<std::int32_t> carriers(const ObjectStage& stage, const Scene& scene,
         if (carrying.supporter >= 0 && p < scene.primitives.size())
             out.push_back(scene.primitives[p].object);
     }
-    std::ranges::sort(out);
-    const auto same = std::ranges::unique(out);
-    out.erase(same.begin(), same.end());
+    sort_unique(out);
     return out;
 }
 

@@ -15,9 +15,9 @@
 #include "core/checksum.h"
 #include "core/random.h"
 #include "device/cancelling.h"
-#include "live/appeared.h"
 #include "live/checkpoint.h"
 #include "live/frame_store.h"
+#include "live/glance.h"
 #include "live/scan_kind.h"
 #include "live/seen_through.h"
 #include "points/caller_frames.h"
@@ -37,9 +37,6 @@ constexpr std::size_t most_telling = 96;
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds no_budget{0}, most_budget{86'400'000};  // no clock runs over
-
-// A glance looks at so many of the latest frames.
-constexpr std::size_t most_glanced = 4;
 
 // One that has nothing to do with when it was taken: of a camera that swings to and fro, each
 // second frame looks the same way.
@@ -68,13 +65,14 @@ class Session::State {
           depth_(from.depth),
           colour_(from.colour),
           options_(checked(std::move(options))),
+          threads_(options_.parse.device->threads().threads()),
           frames_(std::move(from.frames), options_.max_frame_bytes,
                   [this](const live::KeptFrame& frame) { return kind_->image(frame); }),
+          glance_(*kind_, threads_),
           remembered_(std::move(from.remembered)) {
         options_.parse.cancelled = [this, asked = std::move(options_.parse.cancelled)] {
             return cancelling_ || (asked && asked());
         };
-        threads_ = options_.parse.device->threads().threads();
     }
 
     FrameId add(const FrameView& view, const Mat4& pose) {
@@ -115,7 +113,7 @@ class Session::State {
     }
     std::shared_ptr<const LiveScene> update(std::chrono::milliseconds budget) {
         const std::lock_guard one_at_a_time(update_mutex_);
-        static_cast<void>(frames_.snapshot());  // throws where there are none
+        frames_.need_any();
         begin_behind();
         wait_behind(Clock::now() + std::clamp(budget, no_budget, most_budget));
         auto out = told();  // before the next one is
@@ -123,30 +121,9 @@ class Session::State {
         return out;
     }
     std::vector<Appeared> glance() const {
-        std::shared_ptr<const LiveScene> scene;
-        std::shared_ptr<const FrameLabeller> labeller;
-        {
-            const std::lock_guard lock(scene_mutex_);
-            scene = scene_;
-            labeller = labeller_;
-        }
-        if (!scene) return {};
-        // An update may be at work with the other one; results are the same on any.
-        const std::lock_guard one_at_a_time(glance_mutex_);
-        if (!glancing_) glancing_ = device::open_device("native", threads_);
-        const auto [frames, changes] = frames_.snapshot();
-        std::vector<Vec3> places;
-        std::size_t glanced = 0;
-        for (auto at = frames.rbegin(); at != frames.rend() && glanced < most_glanced; ++at) {
-            if (std::ranges::binary_search(scene->frames, at->first)) continue;
-            ++glanced;
-            const std::vector<Vec3> came = live::places_that_came(
-                *scene->result, *labeller, kind_->points(at->second), at->second.pose,
-                kind_->projection(), came_in(at->second, frames, scene->frames), threads_);
-            places.insert(places.end(), came.begin(), came.end());
-        }
-        return live::judge_bodies(*glancing_, *scene->result,
-                                  live::new_bodies(*scene->result, places), options_.parse);
+        const Known known = this->known();
+        if (!known.scene) return {};
+        return glance_(*known.scene, *known.labeller, frames_.snapshot().first, options_.parse);
     }
     std::shared_ptr<const ParseResult> settle() {
         const std::lock_guard one_at_a_time(update_mutex_);
@@ -175,13 +152,13 @@ class Session::State {
         return scene_;
     }
     ThingLabels label(const FrameView& view, const Mat4& pose) const {
-        const Known known = this->known();
+        const Known known = needed();
         const FrameLabels found =
             known.labeller->label(one_frame(camera(), colour_, view, pose, "frame"), 0, threads_);
         return {found.width, found.height, things_of(found.object, *known.scene)};
     }
     std::vector<std::int64_t> label(const CloudView& points, const Mat4& sensor_to_world) const {
-        const Known known = this->known();
+        const Known known = needed();
         const Mat4 pose = rigid(sensor_to_world, "points: sensor_to_world");
         return things_of(known.labeller->label(points, pose, threads_).object, *known.scene);
     }
@@ -208,8 +185,12 @@ class Session::State {
     };
     Known known() const {
         const std::lock_guard lock(scene_mutex_);
-        if (!scene_) throw Error(ErrorKind::usage, "session: nothing is known before update()");
         return {scene_, labeller_};
+    }
+    Known needed() const {
+        Known out = known();
+        if (!out.scene) throw Error(ErrorKind::usage, "session: nothing is known before update()");
+        return out;
     }
     static std::vector<std::int64_t> things_of(const std::vector<std::int32_t>& objects,
                                                const LiveScene& scene) {
@@ -244,29 +225,6 @@ class Session::State {
         out.red.assign(view.red.begin(), view.red.end());
         out.green.assign(view.green.begin(), view.green.end());
         out.blue.assign(view.blue.begin(), view.blue.end());
-        return out;
-    }
-    // By pixel of its image: whether frames of an update saw through what it shows.
-    std::vector<bool> came_in(const live::PosedFrame& frame, const Frames& frames,
-                              const std::vector<FrameId>& parsed) const {
-        std::vector<DepthFrame> seen;
-        for (auto id = parsed.rbegin(); id != parsed.rend() && seen.size() < live::most_asked;
-             ++id) {
-            const auto kept = frames.find(*id);
-            if (kept != frames.end() &&
-                live::look_alike(kind_->projection(), frame.pose, kept->second.pose))
-                seen.push_back(live::posed_image(kept->second));
-        }
-        std::ranges::reverse(seen);
-        seen.push_back(live::posed_image(frame));
-        const std::size_t last = seen.size() - 1;
-        const live::Looks looks(kind_->projection(), seen, glancing_->threads());
-        const auto came = looks.seen_through(
-            [&](std::size_t n) { return std::pair(std::size_t{0}, n == last ? last : 0); });
-        std::vector<bool> out(kind_->projection().pixels());
-        for (const live::GonePixel& pixel : came[last])
-            out[std::size_t{pixel.v} * kind_->projection().width() + pixel.u] =
-                pixel.through_of_fitting > 0;
         return out;
     }
     live::Remembered remembered() const {
@@ -369,11 +327,10 @@ class Session::State {
                 frames, [&](const auto& kept) { return number_of(kept.first) % every == 0; }));
         };
         while (telling() > most_telling) every *= 2;
-        const live::Projection& by = kind_->projection();
         const auto flags = [&](const live::Gone& pixels, const std::vector<std::uint32_t>& spots) {
-            std::vector<bool> flagged(by.pixels()), out;
-            for (const live::GonePixel& p : pixels)
-                flagged[std::size_t{p.v} * by.width() + p.u] = p.through_of_fitting > 0;
+            const std::vector<bool> flagged =
+                live::seen_through_pixels(kind_->projection(), pixels);
+            std::vector<bool> out;
             for (const std::uint32_t pixel : spots) out.push_back(flagged[pixel]);
             return out;
         };
@@ -392,9 +349,10 @@ class Session::State {
     const std::unique_ptr<const live::ScanKind> kind_;
     const std::optional<Intrinsics> depth_, colour_;  // none: of points
     SessionOptions options_;
-    unsigned threads_ = 0;
+    const unsigned threads_;
 
     live::FrameStore frames_;
+    const live::Glance glance_;
 
     // Of the updates, and of the parse that goes on behind, which only they begin and wait for.
     std::mutex update_mutex_;
@@ -404,9 +362,6 @@ class Session::State {
     std::uint64_t parses_ = 0;
     Frames parsed_;                              // of which something was left out
     std::shared_ptr<const ParseResult> of_all_;  // with that; null: not known yet
-
-    mutable std::mutex glance_mutex_;
-    mutable std::shared_ptr<device::Device> glancing_;
 
     mutable std::mutex scene_mutex_;
     live::Remembered remembered_;

@@ -10,6 +10,15 @@
 namespace topple::test {
 namespace {
 
+// Those that the C sessions here are made with.
+SessionOptions same_options() {
+    SessionOptions out;
+    out.parse.device = device::open_device("native", 2);
+    out.parse.disturbances = {};
+    out.forget_gone = false;
+    return out;
+}
+
 TEST_F(CApi, ASessionIsThatOfCpp) {
     const scenes::Sequence walk = small_walk();
     std::vector<topple_frame> images(walk.frames.size());
@@ -49,11 +58,7 @@ TEST_F(CApi, ASessionIsThatOfCpp) {
     ASSERT_EQ(topple_session_update(session, &result, &things, &status), TOPPLE_OK)
         << status.message;
 
-    SessionOptions same;
-    same.parse.device = device::open_device("native", 2);
-    same.parse.disturbances = {};
-    same.forget_gone = false;
-    Session other(walk.intrinsics, {}, same);
+    Session other(walk.intrinsics, {}, same_options());
     for (std::size_t n = 0; n < 5; ++n)
         other.add(frames_view_of(walk).images[n], walk.frames[n].camera_to_world);
     const auto expected = other.update();
@@ -146,11 +151,7 @@ TEST_F(CApi, ASessionOfPointsIsThatOfCpp) {
     EXPECT_EQ(id, 0u);
     ASSERT_EQ(topple_session_update(session, &result, &things, &status), TOPPLE_OK)
         << status.message;
-    SessionOptions same;
-    same.parse.device = device::open_device("native", 2);
-    same.parse.disturbances = {};
-    same.forget_gone = false;
-    Session other = Session::of_points(same);
+    Session other = Session::of_points(same_options());
     other.add(CloudView(points), pose);
     const auto expected = other.update();
     ASSERT_EQ(things, expected->things.size());
