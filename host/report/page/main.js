@@ -46,9 +46,10 @@ function fillBottom(scene) {
   };
   put('timings', 'timings-panel', Object.keys(scene.timings_s).length ? timingBars(scene.timings_s) : null);
   put('energy', 'energy-panel', energyChart(scene.swc_energy));
-  const notes = [...missingTexts(scene), ...scene.notes], about = `About this scan${notes.length ? ` (${plural(notes.length, 'note')})` : ''}`;
+  const notes = [...missingTexts(scene), ...scene.notes], count = notes.length ? plural(notes.length, 'note') : '';
   document.getElementById('notes').append(...notes.map(text => element('li', {text})));
-  for (const id of ['to-about', 'about-heading']) document.getElementById(id).textContent = about;
+  document.getElementById('to-about').textContent = count || 'about';
+  document.getElementById('about-heading').textContent = `About this scan${count && ` (${count})`}`;
   document.getElementById('to-about').addEventListener('click', () => { document.getElementById('about').open = true; });
   document.getElementById('objects-heading').textContent = `All ${plural(scene.objects.length, 'object')}, in a table`;
   fillHow(document.getElementById('how'), scene);

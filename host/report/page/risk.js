@@ -3,7 +3,7 @@
 
 // The first panel: what is at risk, from what, what happens then, and what to do about it.
 
-const listedObjects = 8, listedDoubts = 4, listedLooks = 12, listedUnseen = 4;
+const listedObjects = 8, listedDoubts = 4, listedLooks = 12, listedUnseen = 4, unfoldedCards = 3;
 
 // A number that is the higher the more it is to be acted on: by category, within one above none first what is certain to be in it.
 function urgencyOf(object) {
@@ -48,7 +48,7 @@ function calmOnes(scene) {
 // "3 things to act on, 8 to look at, 6 not judged"; grave: how many of those to look at are of the worst category.
 function headlineText(act, look, unseen, building = 0, grave = 0) {
   const begin = act ? [`${plural(act, 'thing')} to act on`, ...look ? [`${look} to look at`] : []]
-    : grave ? [`${plural(look, 'thing')} to look at, ${grave === look ? 'which' : `${grave} of which`} may be dangerous`]
+    : grave ? [`${plural(look, 'thing')} to look at, ${grave === look ? 'which' : grave} may be dangerous`]
       : ['Nothing to act on', ...look ? [`${look} to look at`] : []];
   return [...begin,
     ...building ? [`${building} in the building to check`] : [], ...unseen ? [`${unseen} not judged`] : []].join(', ');
@@ -279,7 +279,7 @@ function pieceButtons(scene, object, on) {
   const other = object.piece_of, name = objectName(scene, other);
   const join = element('button', {type: 'button', text: joinText(on.joined(object.id, other)), title: `it is one thing with ${name}`, 'data-join': other, onclick: () => on.join(object.id, other)});
   join.dataset.of = object.id;
-  return [element('p', {className: 'row piece'}, [`May be part of ${name}`, join,
+  return [element('p', {className: 'row piece'}, [`Part of ${name}?`, join,
     element('button', {type: 'button', className: 'link', text: 'show', 'aria-label': `show ${name}`, 'data-show': other, onclick: () => on.show(object.id, other)})])];
 }
 
@@ -288,14 +288,18 @@ function cardGroup(title, children, open = false) {
   return element('details', {className: 'cards', open}, [element('summary', {}, [element('h3', {text: title})]), ...children]);
 }
 
+// What is to be acted on, looked at, and less urgent. The first few cards are seen at once, the others behind a fold: one screen holds what matters.
 function fillRisk(panel, scene, on) {
-  const act = urgentOnes(scene, true), looks = looksOf(scene), unseen = unseenOnes(scene), calm = calmOnes(scene), card = object => riskCard(scene, object, on);
-  const items = (objects, most) => objects.length ? [element('div', {className: 'items'}, objects.slice(0, most).map(card)),
-    ...paragraph('hint', objects.length > most ? `And ${objectList(objects.slice(most).map(({id}) => id))}.` : '')] : [];
-  const title = [...looks.length ? [`To look at (${looks.length})`] : [], ...unseen.length ? [`not judged (${unseen.length})`] : []];
-  panel.append(...act.length ? [cardGroup(`To act on (${act.length})`, items(act, Infinity), true)] : [],
-    ...title.length ? [cardGroup(capital(title.join(', ')), [...items(looks, listedLooks), ...items(unseen, listedUnseen)], !act.length || looks.some(isGrave))] : [],
-    ...calm.length ? [cardGroup(`Less urgent (${calm.length})`, items(calm, listedObjects))] : []);
+  const act = urgentOnes(scene, true), looks = looksOf(scene), unseen = unseenOnes(scene), calm = calmOnes(scene);
+  const boxOf = objects => objects.length ? [element('div', {className: 'items'}, objects.map(object => riskCard(scene, object, on)))] : [];
+  const left = (objects, most) => paragraph('hint', objects.length > most ? `And ${objectList(objects.slice(most).map(({id}) => id))}.` : '');
+  const folded = (objects, first, ...hints) => [...boxOf(objects.slice(0, first)),
+    ...objects.length > first ? [element('details', {}, [element('summary', {text: `${objects.length - first} more`}), ...boxOf(objects.slice(first)), ...hints])] : hints];
+  const seenLooks = Math.max(0, unfoldedCards - act.length), openLooks = !act.length || seenLooks > 0 && looks.some(isGrave);
+  panel.append(...act.length ? [cardGroup('To act on', folded(act, unfoldedCards), true)] : [],
+    ...looks.length + unseen.length ? [cardGroup(looks.length ? 'To look at' : 'Not judged', folded([...looks.slice(0, listedLooks), ...unseen.slice(0, listedUnseen)], openLooks ? seenLooks : Infinity,
+      ...left(looks, listedLooks), ...left(unseen, listedUnseen)), openLooks)] : [],
+    ...calm.length ? [cardGroup(`Less urgent (${calm.length})`, [...boxOf(calm.slice(0, listedObjects)), ...left(calm, listedObjects)])] : []);
 }
 
 // How to read the list.

@@ -305,7 +305,7 @@ TEST_F(ShownReport, says_so_where_disturbances_are_missing) {
         << "whether there is wind the notes say: ";
     page.says("about",
               {"About this scan (3 notes)", "No floor was found on which people could walk"});
-    page.says("risk", {"To act on (1)", "To look at (1)",
+    page.says("risk", {"To act on", "To look at",
                        "Unsure what holds it; its fall can kill.Hold it and push gently"});
 }
 
