@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +16,7 @@
 #include "io/output_folder.h"
 #include "io/text.h"
 #include "live/growing_folder.h"
+#include "live/session_stream.h"
 #include "topple/device.h"
 #include "topple/session.h"
 
@@ -21,7 +24,7 @@ namespace topple::cli {
 namespace {
 
 struct LiveArguments {
-    std::string folder, out, backend = "auto", up;
+    std::string from, out, backend = "auto", up;
     SessionOptions options;
     std::optional<double> idle_s;
     unsigned threads = 0;
@@ -76,14 +79,17 @@ void print_glance(const Session& session) {
     std::fflush(stdout);
 }
 
-// What came and is not in the output, at the end; empty: nothing.
-std::string missing_from(const live::GrowingFolder& folder, const std::string& out) {
-    if (folder.damaged() > 0)
-        return folder.first_damaged() + "; " + io::counted(folder.damaged(), "damaged image") +
-               " of " + std::to_string(folder.images()) + " left out of " + out;
-    if (!folder.waits_for().empty())
-        return folder.waits_for() + "; what came since is not in " + out;
-    return {};
+// What the user names: a folder, or - for standard input.
+constexpr const char* standard_input = "-";
+
+std::unique_ptr<live::Feed> feed_of(const std::string& named, const std::string& out) {
+    if (named == standard_input)
+        return std::make_unique<live::SessionStream>(STDIN_FILENO, "standard input");
+    std::error_code error;
+    if (!std::filesystem::is_directory(named, error))
+        throw Error(ErrorKind::input, named + ": No such folder");
+    io::check_not_replaced(named, out);
+    return std::make_unique<live::GrowingFolder>(named);
 }
 
 int run(LiveArguments& a) {
@@ -91,41 +97,38 @@ int run(LiveArguments& a) {
     constexpr std::size_t most_at_once = 500;
     constexpr double patience_s = 5;  // until it is said what is waited for
     if (!a.up.empty()) a.options.parse.up = parse_up("--up", a.up);
-    std::error_code error;
-    if (!std::filesystem::is_directory(a.folder, error))
-        throw Error(ErrorKind::input, a.folder + ": No such folder");
     catch_interrupts();
-    io::check_not_replaced(a.folder, a.out);
+    const auto feed = feed_of(a.from, a.out);
+    const bool is_folder = a.from != standard_input;
+    const std::string called = is_folder ? a.from : "standard input";
     a.options.parse.device = device::open_device(a.backend, a.threads);
     a.options.parse.cancelled = [] { return interrupted() != 0; };
-    a.options.source = a.folder;
+    a.options.source = called;
     OutputOptions output;
     output.threads = a.threads;
     output.cancelled = a.options.parse.cancelled;
-    output.command = {"topple", "parse", a.folder, "-o", a.out};
+    if (is_folder) output.command = {"topple", "parse", a.from, "-o", a.out};
     if (!a.quiet)
-        print("following %s, with results in %s; it ends %s\n", a.folder.c_str(), a.out.c_str(),
+        print("following %s, with results in %s; it ends %s\n", called.c_str(), a.out.c_str(),
               a.idle_s
                   ? ("after " + io::short_number(*a.idle_s) + " s without anything new").c_str()
-                  : "with Ctrl-C");
+              : is_folder ? "with Ctrl-C"
+                          : "where that does");
     std::fflush(stdout);
 
-    live::GrowingFolder folder(a.folder);
     std::unique_ptr<Session> session;
     std::size_t written = 0;  // frames that the output is of
     auto last = Clock::now();
     std::string said;
-    live::GrowingFolder::Reading reading;
+    live::Feed::Reading reading;
     reading.most = most_at_once;
     reading.told = [&](const std::string& line) {
         print_to(stderr, "%s; it is left out\n", line.c_str());
     };
     try {
         while (interrupted() == 0) {
-            if (!session)
-                if (const auto intrinsics = folder.intrinsics())
-                    session = std::make_unique<Session>(*intrinsics, std::nullopt, a.options);
-            if (session && folder.read(*session, reading)) {
+            if (!session) session = feed->begin(a.options);
+            if (session && feed->read(*session, reading)) {
                 if (!a.quiet) print_glance(*session);
                 const auto start = Clock::now();
                 const auto found = session->update();
@@ -136,12 +139,12 @@ int run(LiveArguments& a) {
                 reading.is_last = false;
                 continue;
             }
-            if (reading.is_last) break;
+            if (reading.is_last || feed->ended()) break;
             reading.is_last = a.idle_s && since_s(last) >= *a.idle_s;
             if (reading.is_last) continue;
-            if (!a.quiet && since_s(last) > patience_s && !folder.waits_for().empty() &&
-                folder.waits_for() != said) {
-                said = folder.waits_for();
+            if (!a.quiet && since_s(last) > patience_s && !feed->waits_for().empty() &&
+                feed->waits_for() != said) {
+                said = feed->waits_for();
                 print_to(stderr, "waiting: %s\n", said.c_str());
             }
             std::this_thread::sleep_for(pause);
@@ -155,12 +158,9 @@ int run(LiveArguments& a) {
                  io::counted(written, "frame").c_str());
         return 128 + interrupted();
     }
-    if (written == 0)
-        throw Error(ErrorKind::input, folder.damaged() > 0         ? folder.first_damaged()
-                                      : folder.waits_for().empty() ? a.folder + ": no frame came"
-                                                                   : folder.waits_for());
-    if (const std::string missing = missing_from(folder, a.out); !missing.empty())
+    if (const std::string missing = feed->missing_from(written > 0 ? a.out : ""); !missing.empty())
         throw Error(ErrorKind::input, missing);
+    if (written == 0) throw Error(ErrorKind::input, called + ": no frame came");
     return 0;
 }
 
@@ -169,9 +169,10 @@ int run(LiveArguments& a) {
 Command add_live(CLI::App& app) {
     auto a = std::make_shared<LiveArguments>();
     app.add_option(
-           "FOLDER", a->folder,
+           "FOLDER", a->from,
            "Sequence folder (depth/*.png, intrinsics.json, a trajectory) into which another\n"
-           "program writes frames, and corrects poses")
+           "program writes frames, and corrects poses; or - for messages on standard input\n"
+           "(docs/live.md)")
         ->required();
     app.add_option("-o,--output", a->out, "Folder for the results, written anew at each update")
         ->required();

@@ -33,6 +33,18 @@ std::optional<Intrinsics> GrowingFolder::intrinsics() {
                              [&] { return io::FrameSequence::open(folder_).intrinsics(); });
 }
 
+std::unique_ptr<Session> GrowingFolder::begin(const SessionOptions& options) {
+    const auto found = intrinsics();
+    return found ? std::make_unique<Session>(*found, std::nullopt, options) : nullptr;
+}
+
+std::string GrowingFolder::missing_from(const std::string& out) const {
+    if (damaged_ == 0) return Feed::missing_from(out);
+    if (out.empty()) return first_damaged_;
+    return first_damaged_ + "; " + io::counted(damaged_, "damaged image") + " of " +
+           std::to_string(known_.size()) + " left out of " + out;
+}
+
 GrowingFolder::Stamps GrowingFolder::stamps_of(const io::FrameSequence& frames, std::size_t image) {
     Stamps out;
     for (const std::filesystem::path& file : frames.files(image)) {

@@ -2,16 +2,15 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "topple/session.h"
+#include "live/feed.h"
 
 namespace topple::io {
 class FrameSequence;
@@ -21,7 +20,7 @@ namespace topple::live {
 
 // A folder of depth frames (docs/formats.md) into which another program writes meanwhile: frames
 // come in the order of their names, the trajectory has a pose for each, and may be written anew.
-class GrowingFolder {
+class GrowingFolder final : public Feed {
   public:
     using Clock = std::chrono::steady_clock;
     // patience: for so long an image that can't be read must stay as it is, while one behind it can
@@ -34,19 +33,10 @@ class GrowingFolder {
     // written: then waits_for() says what was wrong.
     std::optional<Intrinsics> intrinsics();
 
-    struct Reading {
-        std::size_t most = SIZE_MAX;  // frames that are added at once
-        bool is_last = false;         // nobody writes any more: what can't be read now is damaged
-        std::function<void(const std::string&)> told;  // of each image that is left out, and why
-    };
-    // Adds the frames that have come, and corrects poses that are others now; whether there were
-    // any. A frame that the session refuses is left out, as a damaged one is.
-    bool read(Session& session, const Reading& how);
-    const std::string& waits_for() const { return waits_for_; }
-
-    std::size_t images() const { return known_.size(); }  // that were read or left out
-    std::size_t damaged() const { return damaged_; }      // of them, left out as such
-    const std::string& first_damaged() const { return first_damaged_; }  // its name, and why
+    std::unique_ptr<Session> begin(const SessionOptions& options) override;
+    bool read(Session& session, const Reading& how) override;
+    bool ended() const override { return false; }
+    std::string missing_from(const std::string& out) const override;
 
   private:
     struct Known {
@@ -61,12 +51,11 @@ class GrowingFolder {
     std::filesystem::path folder_;
     Clock::duration patience_;
     std::vector<Known> known_;  // by image, in the order of their names
-    std::string waits_for_;
     // The next image, where it can't be read: its files' sizes and times, and since when.
     Stamps unread_;
     Clock::time_point unread_since_{};
-    std::size_t damaged_ = 0;
-    std::string first_damaged_;
+    std::size_t damaged_ = 0;    // images
+    std::string first_damaged_;  // its name, and why
 };
 
 }  // namespace topple::live

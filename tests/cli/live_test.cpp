@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/program.h"
 #include "lab/rooms/furnished_room.h"
@@ -31,7 +33,9 @@ class Live : public Program {
                 poses += number;
             }
         put("scan/trajectory.txt", poses);
+        walk_ = walk;
     }
+    scenes::Sequence walk_;
     json read(const std::string& name) const { return json::parse(bytes_of_file(in(name))); }
 };
 
@@ -66,6 +70,39 @@ TEST_F(Live, writes_what_a_parse_of_the_folder_does) {
     // A parse into the same folder has no things.
     succeeds("parse scan -o live --backend native --no-cache --quiet");
     EXPECT_FALSE(std::filesystem::exists(in("live/things.json")));
+}
+
+TEST_F(Live, takes_messages_on_standard_input) {
+    std::string stream =
+        json{{"intrinsics", json::parse(bytes_of_file(in("scan/intrinsics.json")))}}.dump();
+    std::istringstream poses(bytes_of_file(in("scan/trajectory.txt")));
+    for (const DepthFrame& frame : walk_.frames) {
+        std::string line;
+        std::getline(poses, line);
+        std::ranges::replace(line, ' ', ',');
+        const json message{{"add", "frame"}, {"pose", json::parse("[" + line + ",0,0,0,1]")}};
+        stream += "\n" + message.dump() + "\n";
+        stream.append(reinterpret_cast<const char*>(frame.depth.data()), 2 * frame.depth.size());
+    }
+    input_ = put("stream", stream);
+    const Finished done = succeeds("live - -o live --keep-gone --backend native --threads 2");
+    EXPECT_TRUE(done.out.starts_with(
+        "following standard input, with results in live; it ends where that does\n"))
+        << done.out;
+    succeeds("parse scan -o parsed --backend native --threads 2 --no-cache --quiet");
+    for (const std::string name : {"points.ply", "solid.ply", "solids.bin"})
+        EXPECT_TRUE(bytes_of_file(in("live/" + name)) == bytes_of_file(in("parsed/" + name)))
+            << name;
+
+    put("stream", stream.substr(0, stream.size() - 1));
+    const Finished cut = topple("live - -o cut --backend native --quiet");
+    EXPECT_EQ(cut.code, 1);
+    EXPECT_EQ(cut.err,
+              "topple: standard input: message 8: is cut short: 1 of 13824 bytes are missing; what "
+              "came since is not in cut\n");
+    EXPECT_EQ(json::parse(bytes_of_file(in("cut/things.json")))["frames"].size(), 7u);
+    input_ = "/dev/null";
+    EXPECT_EQ(topple("live - -o none").err, "topple: standard input: no frame came\n");
 }
 
 TEST_F(Live, says_what_is_damaged_and_goes_on_with_what_is_behind_it) {

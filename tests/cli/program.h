@@ -25,6 +25,7 @@ struct Finished {
 class Program : public Files {
   protected:
     Program() { std::filesystem::create_directory(folder_ / "work"); }
+    std::filesystem::path input_ = "/dev/null";  // standard input of what is run
 
     std::filesystem::path in(const std::string& name) const { return path("work/" + name); }
     std::filesystem::path put(const std::string& name, std::string_view bytes) const {
@@ -51,7 +52,7 @@ class Program : public Files {
         posix_spawn_file_actions_t files;
         posix_spawn_file_actions_init(&files);
         posix_spawn_file_actions_addchdir_np(&files, path("work").c_str());
-        posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
+        posix_spawn_file_actions_addopen(&files, 0, input_.c_str(), O_RDONLY, 0);
         const int flags = O_WRONLY | O_CREAT | O_TRUNC;
         posix_spawn_file_actions_addopen(&files, 1, out.c_str(), flags, 0600);
         posix_spawn_file_actions_addopen(&files, 2, err.c_str(), flags, 0600);

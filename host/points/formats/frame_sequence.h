@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "points/formats/colour_frames.h"
 #include "points/frame_stream.h"
 #include "topple/input.h"
@@ -57,6 +58,9 @@ bool looks_like_sequence(const std::filesystem::path& path);
 // What is wrong with the intrinsics of a depth camera, if anything; of any pinhole camera.
 std::optional<std::string> depth_intrinsics_fault(const Intrinsics& intrinsics);
 std::optional<std::string> pinhole_fault(const Intrinsics& intrinsics);
+
+// Those of a depth camera in an object of JSON. Throws Error(input) that names `file`.
+Intrinsics depth_intrinsics(const std::filesystem::path& file, const Json& json);
 
 // The parts of open() and load(), for tests.
 Intrinsics read_intrinsics(const FileName& file);

@@ -93,9 +93,7 @@ std::optional<std::string> depth_intrinsics_fault(const Intrinsics& k) {
     return std::nullopt;
 }
 
-Intrinsics read_intrinsics(const FileName& name) {
-    const fs::path& file = name.path();
-    const Json json = read_object(name);
+Intrinsics depth_intrinsics(const fs::path& file, const Json& json) {
     Intrinsics intrinsics = pinhole(file, json);
     if (!json.contains("depth_scale")) {
         fail(file,
@@ -105,6 +103,10 @@ Intrinsics read_intrinsics(const FileName& name) {
     intrinsics.depth_scale = number(file, json, "depth_scale");
     if (const auto fault = depth_intrinsics_fault(intrinsics)) fail(file, *fault);
     return intrinsics;
+}
+
+Intrinsics read_intrinsics(const FileName& name) {
+    return depth_intrinsics(name.path(), read_object(name));
 }
 
 std::optional<Intrinsics> read_colour_intrinsics(const fs::path& folder) {

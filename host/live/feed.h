@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "topple/session.h"
+
+namespace topple::live {
+
+// Where the frames of a session come from while another program makes them.
+class Feed {
+  public:
+    virtual ~Feed() = default;
+
+    // A session of what comes; null as long as it is not known what that is.
+    virtual std::unique_ptr<Session> begin(const SessionOptions& options) = 0;
+
+    struct Reading {
+        std::size_t most = SIZE_MAX;  // frames that are added at once
+        bool is_last = false;         // nobody writes any more: what can't be read now is damaged
+        std::function<void(const std::string&)> told;  // of each frame that is left out, and why
+    };
+    // Adds the frames that have come, and corrects poses that are others now; whether there were
+    // any. A frame that the session refuses is left out.
+    virtual bool read(Session& session, const Reading& how) = 0;
+    // Why it goes on no further now; empty: nothing is wrong.
+    const std::string& waits_for() const { return waits_for_; }
+    // Whether nothing more can come.
+    virtual bool ended() const = 0;
+    // What came and is not in the session, and why, at the end; empty: nothing. out: what the
+    // session was written to; empty: it was not.
+    virtual std::string missing_from(const std::string& out) const {
+        if (waits_for_.empty() || out.empty()) return waits_for_;
+        return waits_for_ + "; what came since is not in " + out;
+    }
+
+  protected:
+    std::string waits_for_;
+};
+
+}  // namespace topple::live
