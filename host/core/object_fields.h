@@ -338,6 +338,10 @@ inline constexpr auto kind<Object> = described(
     field("footprint_error_m", &Object::footprint_error_m,
           "the same of where the border of its support lies, metres",
           Note{.since = "mass_error_kg"}, &topple_object::footprint_error_m),
+    field("friction", &Object::friction,
+          "its coefficient of friction, by its name or a correction; written where it is not the "
+          "scene's",
+          Note{.since = "friction", .if_any = true}, &topple_object::friction),
     field("barrier_J", &Object::barrier_J,
           "least energy, joules, that moves it out of its place. 0: it falls or rolls by itself",
           &topple_object::barrier_J),

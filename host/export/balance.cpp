@@ -120,13 +120,14 @@ class Statics {
         if (down.norm() < 1e-6) down = n.cross(Eigen::Vector3d::UnitY());
         down.normalize();
         const Eigen::Vector3d level = n.cross(down);
+        const double own = bodies_[touch.above].friction, friction = own > 0 ? own : friction_;
         for (const Vec3& p : touch.point) {
             for (const Eigen::Vector3d& t :
                  {down, Eigen::Vector3d(-down), level, Eigen::Vector3d(-level)}) {
                 Force force;
                 force.above = touch.above;
                 force.below = touch.below;
-                force.along = n + sure_friction * friction_ * t;
+                force.along = n + sure_friction * friction * t;
                 force.turns_above =
                     (eigen(p) - eigen(bodies_[touch.above].center_m)).cross(force.along);
                 force.turns_below =

@@ -25,7 +25,8 @@ struct Body {
     double lost_m3 = 0;  // of its parts, so that they lie in no other body's
     // How far inside its footing its centre of mass stands, by its barrier; 0: it falls by itself.
     double firm_m = 0;
-    int struts = 0;  // of its parts: feet that were not seen
+    double friction = 0;  // coefficient; if not above 0, the scene's
+    int struts = 0;       // of its parts: feet that were not seen
     // Its footing was not seen, or was cut away as it lay in others: it stands on a pad made for
     // it, or is held where it is.
     bool on_pad = false, held = false;

@@ -22,6 +22,7 @@ struct NamedPart {
 struct NamedBody {
     std::string name;  // object_ID, or pad_N
     const Body* body = nullptr;
+    double friction = 0;  // coefficient
     std::vector<NamedPart> parts;
 };
 

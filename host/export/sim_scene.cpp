@@ -80,6 +80,7 @@ Bodies bodies_of(const Scene& scene, const SolidScene& solids, ThreadPool& threa
         body.object = object.id;
         body.fixed = object.grounded;
         body.mass_kg = object.mass_kg;
+        body.friction = object.friction;
         body.center_m = transformed(scene.manhattan_from_input, object.center_of_mass_m);
         body.inertia_kg_m2 = turned_inertia(rotation, object.inertia_kg_m2);
         out.push_back(std::move(body));

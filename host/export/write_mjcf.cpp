@@ -56,6 +56,11 @@ std::string inertial(const Body& body) {
     return joined(out, "/>\n");
 }
 
+// The coefficients of sliding, turning and rolling.
+std::string frictions(double sliding) {
+    return attribute("friction", numbers({sliding, 0.005, 0.0001}));
+}
+
 // Of one body; meshes that it takes go to `assets`.
 void add_body(const NamedBody& named, std::string& assets, std::string& out) {
     const Body& body = *named.body;
@@ -63,10 +68,13 @@ void add_body(const NamedBody& named, std::string& assets, std::string& out) {
            ">\n");
     if (!body.fixed) out += "      <freejoint/>\n";
     out += inertial(body);
+    // Where bodies differ MuJoCo takes the larger coefficient, but that of the higher priority.
+    const std::string own =
+        body.friction > 0 ? joined(frictions(named.friction), attribute("priority", "1")) : "";
     for (const NamedPart& each : named.parts) {
         if (is_mesh(each.shape)) add_mesh(each, body.center_m, assets);
         append(out, "      <geom", attribute("name", each.name), attribute("class", "collision"),
-               std::visit(GeomOf{each.name}, each.shape), "/>\n");
+               std::visit(GeomOf{each.name}, each.shape), own, "/>\n");
     }
     if (!body.visual.triangle.empty()) {
         const std::string mesh = joined(named.name, "_visual");
@@ -81,7 +89,7 @@ void add_body(const NamedBody& named, std::string& assets, std::string& out) {
 // Viewers show groups 0 to 2.
 std::string defaults(const SimScene& scene, bool visuals) {
     std::string out = "  <default>\n    <geom";
-    append(out, attribute("friction", numbers({scene.friction, 0.005, 0.0001})),
+    append(out, frictions(scene.friction),
            " condim=\"4\" solref=\"0.01 1\" solimp=\"0.95 0.99 0.0005\"/>\n"
            "    <default class=\"collision\">\n      <geom",
            attribute("group", visuals ? "3" : "0"), "/>\n    </default>\n");

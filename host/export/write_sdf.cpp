@@ -65,9 +65,9 @@ std::string sdf_surface(double friction) {
                                                         element("min_depth", "0.0005"))))));
 }
 
-std::string sdf_model(const NamedBody& named, const std::string& surface,
-                      const std::string& folder) {
+std::string sdf_model(const NamedBody& named, const std::string& folder) {
     const Body& body = *named.body;
+    const std::string surface = sdf_surface(named.friction);
     std::string out = joined("    <model", attribute("name", named.name), ">\n      ",
                              element("static", body.fixed ? "true" : "false"),
                              element("pose", joined(text(body.center_m), " 0 0 0")),
@@ -99,8 +99,7 @@ void write_sdf(const std::filesystem::path& folder, const SimScene& scene) {
            element("cast_shadows", "false"), element("pose", "0 0 10 0 0 0"),
            element("diffuse", "0.8 0.8 0.8 1"), element("specular", "0.1 0.1 0.1 1"),
            element("direction", "-0.4 0.3 -0.9"), "</light>\n");
-    const std::string surface = sdf_surface(scene.friction);
-    for (const NamedBody& named : bodies) out += sdf_model(named, surface, files.beside());
+    for (const NamedBody& named : bodies) out += sdf_model(named, files.beside());
     out += "  </world>\n</sdf>\n";
     files.commit(out);
 }

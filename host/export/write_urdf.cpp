@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <string>
 
 #include "export/export_folder.h"
@@ -55,13 +56,13 @@ std::string urdf_inertial(double mass_kg, const Mat3& i) {
     return out;
 }
 
-// <contact> is Bullet's; and what has no mass is fixed there.
-std::string urdf_link(const NamedBody& named, double friction, std::string_view files,
-                      std::string_view kind) {
+// <contact> is Bullet's, which takes the product of both bodies' coefficients; and what has no mass
+// is fixed there.
+std::string urdf_link(const NamedBody& named, std::string_view files, std::string_view kind) {
     const Body& body = *named.body;
     std::string out = joined("  <link", attribute("name", named.name), ">\n");
-    append(out, "    <contact><lateral_friction", attribute("value", number(friction)),
-           "/></contact>\n",
+    append(out, "    <contact><lateral_friction",
+           attribute("value", number(std::sqrt(named.friction))), "/></contact>\n",
            body.fixed ? urdf_inertial(0, {}) : urdf_inertial(body.mass_kg, body.inertia_kg_m2));
     if (!body.visual.triangle.empty())
         append(out, "    <visual>", UrdfShape{named.name, files, kind}.mesh(named.name),
@@ -98,13 +99,12 @@ void write_urdf(const std::filesystem::path& folder, const SimScene& scene) {
     const std::string below = joined(files.beside(), "/");
     for (const NamedBody& named : bodies) {
         const bool fixed = named.body->fixed;
-        append(all, urdf_link(named, scene.friction, below, ""), "  <joint",
+        append(all, urdf_link(named, below, ""), "  <joint",
                attribute("name", joined(named.name, "_joint")),
                attribute("type", fixed ? "fixed" : "floating"), "><parent link=\"world\"/><child",
                attribute("link", named.name), "/><origin",
                attribute("xyz", text(named.body->center_m)), " rpy=\"0 0 0\"/></joint>\n");
-        files.add(joined(named.name, ".urdf"),
-                  robot(named.name, urdf_link(named, scene.friction, "", for_bullet)));
+        files.add(joined(named.name, ".urdf"), robot(named.name, urdf_link(named, "", for_bullet)));
     }
     files.commit(robot("scan", all));
 }

@@ -185,13 +185,26 @@ std::string usd_mass(const Body& body) {
                   "\n        quatf physics:principalAxes = ", quaternion_tuple(axes), "\n");
 }
 
+// A material of that name.
+std::string usd_material(std::string_view indent, std::string_view name, double friction) {
+    return joined(indent, "def Material \"", name, "\" (\n", indent,
+                  "    prepend apiSchemas = [\"PhysicsMaterialAPI\"]\n", indent, ")\n", indent,
+                  "{\n", indent, "    float physics:staticFriction = ", number(friction), "\n",
+                  indent, "    float physics:dynamicFriction = ", number(friction), "\n", indent,
+                  "    float physics:restitution = 0\n", indent, "}\n");
+}
+
 std::string usd_body(const NamedBody& named, bool hide_parts) {
     const Body& body = *named.body;
-    std::string out = joined("\n    def Xform \"", named.name, "\"");
-    if (!body.fixed)
-        out +=
-            " (\n        prepend apiSchemas = [\"PhysicsRigidBodyAPI\", \"PhysicsMassAPI\"]\n    )";
-    append(out, "\n    {\n        double3 xformOp:translate = ", tuple(body.center_m),
+    std::string out = joined("\n    def Xform \"", named.name, "\""), schemas;
+    if (!body.fixed) schemas = "\"PhysicsRigidBodyAPI\", \"PhysicsMassAPI\"";
+    if (body.friction > 0) append(schemas, schemas.empty() ? "" : ", ", "\"MaterialBindingAPI\"");
+    if (!schemas.empty()) append(out, " (\n        prepend apiSchemas = [", schemas, "]\n    )");
+    out += "\n    {\n";
+    if (body.friction > 0)
+        append(out, "        rel material:binding:physics = </World/", named.name, "/friction>\n\n",
+               usd_material("        ", "friction", named.friction), "\n");
+    append(out, "        double3 xformOp:translate = ", tuple(body.center_m),
            "\n        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
            body.fixed ? "" : usd_mass(body));
     if (!body.visual.triangle.empty()) out += usd_visual(body.visual);
@@ -209,7 +222,6 @@ void write_usd(const std::filesystem::path& file, const SimScene& scene) {
     const std::vector<NamedBody> bodies = named_bodies(scene);
     const bool seen = std::ranges::any_of(
         bodies, [](const NamedBody& named) { return !named.body->visual.triangle.empty(); });
-    const std::string friction = number(scene.friction);
     std::string out(usd_mark);
     append(out,
            "(\n"
@@ -227,15 +239,8 @@ void write_usd(const std::filesystem::path& file, const SimScene& scene) {
            "    {\n"
            "        vector3f physics:gravityDirection = (0, 0, -1)\n"
            "        float physics:gravityMagnitude = ",
-           number(scene.gravity_m_s2),
-           "\n    }\n\n"
-           "    def Material \"friction\" (\n"
-           "        prepend apiSchemas = [\"PhysicsMaterialAPI\"]\n"
-           "    )\n"
-           "    {\n"
-           "        float physics:staticFriction = ",
-           friction, "\n        float physics:dynamicFriction = ", friction,
-           "\n        float physics:restitution = 0\n    }\n");
+           number(scene.gravity_m_s2), "\n    }\n\n",
+           usd_material("    ", "friction", scene.friction));
     for (const NamedBody& named : bodies) out += usd_body(named, seen);
     out += "}\n";
     replace_file(file, out);

@@ -126,8 +126,8 @@ ObjectStage stage_of(device::Device& device, const SolidScene& near, const Floor
     for (const std::int32_t o : out.object_of_primitive) loose.push_back(o > 0);
     const physics::PartHulls hulls =
         physics::part_hulls(near.cells(), near.boundary(), loose, device.threads());
-    find_barriers(device, hulls, near, {}, Stops(out), out.object_of_primitive, options.friction,
-                  out.objects, {}, false);
+    find_barriers(device, hulls, near, {}, Stops(out), out.object_of_primitive, out.objects, {},
+                  false);
     return out;
 }
 

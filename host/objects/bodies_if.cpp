@@ -32,9 +32,15 @@ std::vector<Body> BodiesIf::operator()(std::vector<std::vector<std::int32_t>> pr
     for (const Body& body : bodies) density.push_back(body.candidate.body.density_kg_m3());
     const std::vector<physics::Symmetric> inertia =
         physics::inertia_of_objects(stage.masses.moments, stage.bodies, object_of, density);
-    for (std::size_t o = 0; o < bodies.size(); ++o) bodies[o].inertia = inertia[o];
-    find_barriers(device, hulls, solids, stage.hidden_walls, Stops(stage), object_of, friction,
-                  bodies, unseen_of(parts), false);
+    for (std::size_t o = 0; o < bodies.size(); ++o) {
+        bodies[o].inertia = inertia[o];
+        const std::vector<std::int32_t>& members = bodies[o].candidate.primitives;
+        if (!members.empty())
+            bodies[o].friction =
+                stage.masses.objects[stage.object_of_primitive[members[0]]].friction;
+    }
+    find_barriers(device, hulls, solids, stage.hidden_walls, Stops(stage), object_of, bodies,
+                  unseen_of(parts), false);
     bodies.erase(bodies.begin());
     return bodies;
 }

@@ -25,6 +25,7 @@ OrderedJson json_of_correction(const AppliedCorrection& applied) {
     if (c.kind == Kind::apart) json["from_m"] = c.from_m;
     if (c.kind == Kind::hollow) json["wall_m"] = c.wall_m;
     if (c.kind == Kind::mass) json["kg"] = c.mass_kg;
+    if (c.kind == Kind::friction) json["coefficient"] = c.coefficient;
     if (c.kind == Kind::name) json["name"] = c.name;
     if (!c.was.empty()) json["was"] = c.was;
     json["held"] = applied.held;
@@ -48,6 +49,7 @@ AppliedCorrection correction_of(const OrderedJson& json) {
     if (json.contains("from_m")) c.from_m = json.at("from_m").get<std::vector<Vec3>>();
     if (json.contains("wall_m")) c.wall_m = json.at("wall_m").get<double>();
     if (json.contains("kg")) c.mass_kg = json.at("kg").get<double>();
+    if (json.contains("coefficient")) c.coefficient = json.at("coefficient").get<double>();
     if (json.contains("name")) c.name = json.at("name").get<std::string>();
     if (json.contains("was")) c.was = json.at("was").get<std::string>();
     out.held = json.at("held").get<bool>();

@@ -20,7 +20,8 @@ inline constexpr std::array correction_kinds{std::pair{Correction::Kind::one_thi
                                              std::pair{Correction::Kind::not_there, "not_there"},
                                              std::pair{Correction::Kind::hollow, "hollow"},
                                              std::pair{Correction::Kind::mass, "mass"},
-                                             std::pair{Correction::Kind::name, "name"}};
+                                             std::pair{Correction::Kind::name, "name"},
+                                             std::pair{Correction::Kind::friction, "friction"}};
 std::optional<Correction::Kind> correction_kind(std::string_view name);
 // "one_thing, apart, ..."
 std::string known_corrections();

@@ -15,20 +15,19 @@ constexpr double size_spread = 0.3, fill_spread = 0.5;
 const double other_weight = std::exp(-2.0);
 constexpr double other_kg_m3 = 450, other_spread = 0.9;
 
-// The kind whose words are the longest in the name: "coffee table" before "table".
-const ThingKind* named(const Materials& materials, std::string_view name) {
+double square(double x) {
+    return x * x;
+}
+
+}  // namespace
+
+const ThingKind* named_kind(const Materials& materials, std::string_view name) {
     const ThingKind* found = nullptr;
     for (const ThingKind& kind : materials)
         if (name_has(name, kind.name) && (!found || kind.name.size() > found->name.size()))
             found = &kind;
     return found;
 }
-
-double square(double x) {
-    return x * x;
-}
-
-}  // namespace
 
 double DensityPrior::error_share() const {
     const auto below = [&](double share) {  // the probability
@@ -45,7 +44,8 @@ double DensityPrior::error_share() const {
 
 DensityPrior density_prior(const Materials& materials, std::string_view name, Vec3 size_m,
                            double fill) {
-    if (const ThingKind* kind = named(materials, name)) return {kind->density_kg_m3, kind->spread};
+    if (const ThingKind* kind = named_kind(materials, name))
+        return {kind->density_kg_m3, kind->spread};
     std::ranges::sort(size_m);
     const bool measured = size_m[0] > 0 && fill > 0;
     // Moments of the logarithm of a mixture.

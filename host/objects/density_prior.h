@@ -16,6 +16,9 @@ struct DensityPrior {
     double error_share() const;
 };
 
+// The kind whose words are the longest in the name: "coffee table" before "table"; null: none.
+const ThingKind* named_kind(const Materials& materials, std::string_view name);
+
 // Of a thing with that name, or, where no kind has it, of things of that size and fill, each kind
 // as likely as it is like them. size_m: of its upright box, in any order.
 DensityPrior density_prior(const Materials& materials, std::string_view name, Vec3 size_m,

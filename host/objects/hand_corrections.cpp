@@ -2,6 +2,7 @@
 #include "objects/hand_corrections.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <queue>
 #include <set>
@@ -318,7 +319,17 @@ std::vector<std::int32_t> HandCorrections::fixed() const {
 Table<ObjectId, KnownMass> HandCorrections::masses(ObjectOf object_of, std::size_t objects,
                                                    std::int32_t grounded) {
     Table<ObjectId, KnownMass> out(objects);
-    Table<ObjectId, std::optional<std::size_t>> wall_by(objects), mass_by(objects);
+    struct Measure {
+        Kind kind;
+        double Correction::*said;
+        std::optional<double> KnownMass::*known;
+        Table<ObjectId, std::optional<std::size_t>> by;  // the correction that said so
+    };
+    const Table<ObjectId, std::optional<std::size_t>> none(objects);
+    std::array measures{
+        Measure{Kind::hollow, &Correction::wall_m, &KnownMass::wall_m, none},
+        Measure{Kind::mass, &Correction::mass_kg, &KnownMass::mass_kg, none},
+        Measure{Kind::friction, &Correction::coefficient, &KnownMass::friction, none}};
     for (std::size_t n = 0; n < applied_.size(); ++n) {
         const Correction& c = applied_[n].correction;
         std::set<std::int32_t> about;
@@ -326,7 +337,8 @@ Table<ObjectId, KnownMass> HandCorrections::masses(ObjectOf object_of, std::size
         if (c.kind == Kind::name)
             for (const std::int32_t o : about)
                 if (out[o].name.empty()) out[o].name = c.name;
-        if (c.kind != Kind::hollow && c.kind != Kind::mass) continue;
+        const auto measure = std::ranges::find(measures, c.kind, &Measure::kind);
+        if (measure == measures.end()) continue;
         if (c.kind == Kind::mass && about.size() > 1)
             remark(n,
                    "its spots lie in " + std::to_string(about.size()) +
@@ -334,13 +346,15 @@ Table<ObjectId, KnownMass> HandCorrections::masses(ObjectOf object_of, std::size
                    true);
         for (const std::int32_t o : about) {
             if (o == grounded) {
-                remark(n, "what is there is of the building, whose mass counts for nothing", false);
+                remark(n,
+                       "what is there is of the building, whose mass and friction count for "
+                       "nothing",
+                       false);
                 continue;
             }
-            const bool hollow = c.kind == Kind::hollow;
-            auto& by = (hollow ? wall_by : mass_by)[o];
-            std::optional<double>& value = hollow ? out[o].wall_m : out[o].mass_kg;
-            const double own = hollow ? c.wall_m : c.mass_kg;
+            std::optional<std::size_t>& by = measure->by[o];
+            std::optional<double>& value = out[o].*measure->known;
+            const double own = c.*measure->said;
             if (by && *value != own) {
                 remark(n, numbered(*by) + " says otherwise of object " + std::to_string(o), false);
                 continue;

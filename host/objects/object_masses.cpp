@@ -86,6 +86,12 @@ ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
     for (std::size_t o = 0; o < objects; ++o)
         if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) looks[o] = {};
     const physics::Repeated alike = physics::find_repeated(looks);
+    for (std::size_t o = 0; o < objects; ++o) {
+        const ThingKind* kind =
+            options.materials ? named_kind(*options.materials, known[o].name) : nullptr;
+        out.objects[o].friction = known[o].friction.value_or(
+            kind && kind->friction > 0 ? kind->friction : options.friction);
+    }
     for (std::size_t o = 0; options.materials && o < objects; ++o) {
         if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) continue;
         const Vec3 size_m{looks[o].box_m[0], looks[o].box_m[1], looks[o].height_m};

@@ -17,11 +17,12 @@
 
 namespace topple {
 
-// What somebody knows of an object's mass.
+// What somebody knows of an object's mass, and of its friction.
 struct KnownMass {
-    std::optional<double> wall_m;   // it is a shell of that thickness
-    std::optional<double> mass_kg;  // of all of it
-    std::string name;               // what it is
+    std::optional<double> wall_m;    // it is a shell of that thickness
+    std::optional<double> mass_kg;   // of all of it
+    std::optional<double> friction;  // coefficient
+    std::string name;                // what it is
 };
 
 enum class MassModel : std::uint8_t {
@@ -42,6 +43,7 @@ struct ObjectMasses {
         physics::Symmetric inertia{};       // about its centre of mass
         double alike_error_kg = 0;          // see physics/repeated_objects.h
         physics::Drawers drawers;           // grid frame
+        double friction = 0;                // coefficient, on what it stands on
     };
     Table<PrimitiveId, double> density_kg_m3;        // mass over volume
     Table<PrimitiveId, physics::Symmetric> moments;  // physics::second_moments

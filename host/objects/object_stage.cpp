@@ -168,6 +168,7 @@ void take_mass(const ObjectMasses::Object& mass, Body& object) {
     object.mass_model = mass.model;
     object.inertia = mass.inertia;
     object.drawers = mass.drawers;
+    object.friction = mass.friction;
     add_independent(mass.contents_error, object.body_error);
     // What is off of alike things holds what is off of each by itself.
     object.body_error.mass_kg = std::max(object.body_error.mass_kg, mass.alike_error_kg);
@@ -193,11 +194,10 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
             shell_odds(std::move(judged.shell))};
 }
 
-physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping,
-                              double friction) {
+physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping) {
     return {object.candidate, {object.inertia, object.highest_m},
             tipping,          safety::directions(),
-            object.sliding,   friction};
+            object.sliding,   object.friction};
 }
 
 Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId, Body> objects) {
@@ -211,8 +211,8 @@ Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId
 
 void find_barriers(device::Device& device, const physics::PartHulls& parts,
                    const SolidScene& solids, const physics::HiddenWalls& walls, const Stops& stops,
-                   ObjectOf object_of, double friction, std::vector<Body>& objects,
-                   const Unseen& unseen, bool landscapes) {
+                   ObjectOf object_of, std::vector<Body>& objects, const Unseen& unseen,
+                   bool landscapes) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
     const std::vector<ObjectBox> boxes = object_boxes(solids, object_of, objects.size());
@@ -245,9 +245,10 @@ void find_barriers(device::Device& device, const physics::PartHulls& parts,
         stances.push_back({o.candidate.stood ? o.candidate.support_polygon : physics::Polygon{},
                            o.candidate.support_height_m, o.rest != graph::RestKind::seen});
     }
-    const std::vector<double> all_friction(candidates.size(), friction);
+    std::vector<double> friction;
+    for (const Body& o : objects) friction.push_back(o.friction);
     std::vector<physics::SlideResult> sliding =
-        physics::slide_all(cells, object_of, bodies, all_friction,
+        physics::slide_all(cells, object_of, bodies, friction,
                            {.places = landscapes,
                             .stances = stances,
                             .ways = safety::directions(),
@@ -268,7 +269,7 @@ void find_barriers(device::Device& device, const physics::PartHulls& parts,
                                                 (*how.edge)[0]);
         objects[o].barrier_error_J =
             physics::barrier_error_J(candidates[o], objects[o].body_error, tipping[o], how,
-                                     objects[o].margin_error_m, friction);
+                                     objects[o].margin_error_m, objects[o].friction);
         objects[o].seen_error_J = objects[o].barrier_error_J;
         // Its upper end is that of a foot that goes on unseen.
         if (how.mode != physics::Instability::Mode::slide)
@@ -278,13 +279,13 @@ void find_barriers(device::Device& device, const physics::PartHulls& parts,
                              how.barrier_J);
         objects[o].overturning = physics::overturning(
             candidates[o], objects[o].body_error, tipping[o], objects[o].box.top_m(),
-            objects[o].margin_error_m, friction, objects[o].floor_m);
+            objects[o].margin_error_m, objects[o].friction, objects[o].floor_m);
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);
         if (!candidates[o].support_polygon.empty())
-            objects[o].toppling = std::make_shared<physics::Toppling>(
-                toppling_of(objects[o], objects[o].tipping, friction));
+            objects[o].toppling =
+                std::make_shared<physics::Toppling>(toppling_of(objects[o], objects[o].tipping));
         if (landscapes)
             objects[o].poses =
                 physics::body_landscape(hulls[o], candidates[o], objects[o].tipping.ways);
@@ -355,12 +356,12 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         out.hidden_walls = find_hidden_walls(
             solid, out.object_of_primitive, fixed_primitives(out.object_of_primitive, out.objects));
         find_barriers(device, hulls, *solid.solids, out.hidden_walls, Stops(out),
-                      out.object_of_primitive, options.friction, out.objects, unseen_of(solid));
+                      out.object_of_primitive, out.objects, unseen_of(solid));
         return made;
     });
     doubt_objects(parts.joints, hand.links(), seen, out);
     stage("alternatives", [&] {
-        const BodiesIf bodies_if{device, hulls, solid, maker, out, options.friction};
+        const BodiesIf bodies_if{device, hulls, solid, maker, out};
         out.alternatives = find_alternatives(bodies_if, parts.joints, hand.links());
         if (!out.possible_things.empty()) find_possible_things(bodies_if, out);
     });

@@ -44,6 +44,7 @@ struct Body {
     MassModel mass_model = MassModel::solid;
     physics::Symmetric inertia{};
     physics::Drawers drawers;
+    double friction = 0;            // coefficient, on what it stands on
     physics::BodyError body_error;  // at its density, as all that follows from it
     double density_error_kg = 0;    // of its mass, by what its density may be
     double mass_error_kg() const { return std::hypot(body_error.mass_kg, density_error_kg); }
@@ -70,12 +71,11 @@ struct Body {
     ObjectBox box;
 };
 
-// Takes over what is known of its mass.
+// Takes over what is known of its mass and friction.
 void take_mass(const ObjectMasses::Object& mass, Body& object);
 
 // S(W) by direction and height of an object that tips so, as it stands.
-physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping,
-                              double friction);
+physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping);
 
 // What a doubtful object may be in place of what it was taken for.
 struct OtherReading {
@@ -130,8 +130,8 @@ Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId
 // and walls behind what hides them stop what falls.
 void find_barriers(device::Device& device, const physics::PartHulls& parts,
                    const SolidScene& solids, const physics::HiddenWalls& walls, const Stops& stops,
-                   ObjectOf object_of, double friction, std::vector<Body>& objects,
-                   const Unseen& unseen = {}, bool landscapes = true);
+                   ObjectOf object_of, std::vector<Body>& objects, const Unseen& unseen = {},
+                   bool landscapes = true);
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

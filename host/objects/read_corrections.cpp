@@ -15,7 +15,7 @@ namespace {
 constexpr const char* corrections_schema = "topple.corrections/1";
 constexpr std::uint64_t largest_corrections_bytes = 10'000'000;
 constexpr std::size_t most_corrections = 1000, most_spots = 100, longest_name = 200;
-constexpr double thickest_m = 10, heaviest_kg = 1e6;
+constexpr double thickest_m = 10, heaviest_kg = 1e6, roughest = 10;
 
 std::string which(std::size_t n) {
     return "correction " + std::to_string(n + 1);
@@ -63,15 +63,16 @@ std::optional<std::string> fault_of_name(const std::string& name) {
 
 // What the fields are called: in files, and as members.
 struct FieldNames {
-    std::string at_m, from_m, wall_m, mass_kg, name, was;
+    std::string at_m, from_m, wall_m, mass_kg, coefficient, name, was;
 };
 const FieldNames& in_files() {
-    static const FieldNames names{"\"at_m\"", "\"from_m\"", "\"wall_m\"",
-                                  "\"kg\"",   "\"name\"",   "\"was\""};
+    static const FieldNames names{"\"at_m\"",        "\"from_m\"", "\"wall_m\"", "\"kg\"",
+                                  "\"coefficient\"", "\"name\"",   "\"was\""};
     return names;
 }
 const FieldNames& as_members() {
-    static const FieldNames names{"at_m", "from_m", "wall_m", "mass_kg", "name", "was"};
+    static const FieldNames names{"at_m",        "from_m", "wall_m", "mass_kg",
+                                  "coefficient", "name",   "was"};
     return names;
 }
 
@@ -85,6 +86,8 @@ std::optional<std::string> fault_of_one(const Correction& c, const FieldNames& n
         return names.wall_m + " is " + range(c.wall_m, " m", thickest_m);
     if (c.kind == Correction::Kind::mass && !(c.mass_kg > 0 && c.mass_kg <= heaviest_kg))
         return names.mass_kg + " is " + range(c.mass_kg, " kg", heaviest_kg);
+    if (c.kind == Correction::Kind::friction && !(c.coefficient > 0 && c.coefficient <= roughest))
+        return names.coefficient + " is " + range(c.coefficient, "", roughest);
     if (c.kind == Correction::Kind::name) {
         if (const auto wrong = fault_of_name(c.name)) return names.name + " " + *wrong;
     }
@@ -105,6 +108,7 @@ class Entry : io::JsonEntry {
         if (out.kind == Correction::Kind::apart) out.from_m = spots("from_m");
         if (out.kind == Correction::Kind::hollow) out.wall_m = number("wall_m");
         if (out.kind == Correction::Kind::mass) out.mass_kg = number("kg");
+        if (out.kind == Correction::Kind::friction) out.coefficient = number("coefficient");
         if (out.kind == Correction::Kind::name) out.name = text("name");
         if (has("was")) out.was = text("was");
         if (const auto what = fault_of_one(out, in_files())) wrong(*what);

@@ -36,7 +36,8 @@ std::optional<std::string> fault_of_kind(const ThingKind& kind) {
           {"an edge of size_m", kind.size_m[2], 1e-4, 100},
           {"fill", kind.fill, 1e-3, 1},
           {"density_kg_m3", kind.density_kg_m3, 1, 25000},
-          {"spread", kind.spread, 0, 3}})
+          {"spread", kind.spread, 0, 3},
+          {"friction", kind.friction, 0, 10}})
         if (!(value >= least && value <= most))
             return std::string(of) + " is " + io::short_number(value) + "; it must be from " +
                    io::short_number(least) + " to " + io::short_number(most);
@@ -55,6 +56,7 @@ ThingKind kind_of(io::JsonEntry entry) {
     out.fill = entry.number("fill");
     out.density_kg_m3 = entry.number("density_kg_m3");
     out.spread = entry.number("spread");
+    if (entry.has("friction")) out.friction = entry.number("friction");
     return out;
 }
 

@@ -8,7 +8,8 @@ bool goes_on(const Correction& before, const Correction& c) {
     using Kind = Correction::Kind;
     if (c.was.empty() || c.was != before.was) return false;
     if (c.kind != before.kind) return before.kind == Kind::one_thing && c.kind == Kind::apart;
-    return c.wall_m == before.wall_m && c.mass_kg == before.mass_kg && c.name == before.name &&
+    return c.wall_m == before.wall_m && c.mass_kg == before.mass_kg &&
+           c.coefficient == before.coefficient && c.name == before.name &&
            (c.at_m != before.at_m || c.from_m != before.from_m);
 }
 

@@ -425,8 +425,9 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
 std::vector<Landscape::Places> places_of(const SolidCells& cells,
                                          std::span<const std::int32_t> object_of_primitive,
                                          std::span<const MassProperties> objects,
-                                         std::span<const std::size_t> chosen, double friction,
-                                         double reach_m, const Unseen& unseen) {
+                                         std::span<const std::size_t> chosen,
+                                         std::span<const double> friction, double reach_m,
+                                         const Unseen& unseen) {
     const std::vector<std::int32_t> object =
         object_of_cells(cells, object_of_primitive, objects.size());
     const CellColumns columns(cells);
@@ -438,7 +439,7 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
         out.emplace_back();
         if (!feet[o].stands || !(objects[o].mass_kg > 0)) continue;
         SlideMap map(cells, columns, object, self, feet[o], objects[o].center, reach_m, unseen);
-        out.back() = places_around(map, objects[o], reach_m, friction, cells.voxel_m);
+        out.back() = places_around(map, objects[o], reach_m, friction[o], cells.voxel_m);
     }
     return out;
 }

@@ -81,8 +81,9 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
 std::vector<Landscape::Places> places_of(const SolidCells& cells,
                                          std::span<const std::int32_t> object_of_primitive,
                                          std::span<const MassProperties> objects,
-                                         std::span<const std::size_t> chosen, double friction,
-                                         double reach_m, const Unseen& unseen = {});
+                                         std::span<const std::size_t> chosen,
+                                         std::span<const double> friction, double reach_m,
+                                         const Unseen& unseen = {});
 
 // What sliding would be if the object stood at another of its places, column a and row b of them:
 // the nearest place among them that falls, in a straight line. It may fall as soon as it has left

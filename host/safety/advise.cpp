@@ -28,14 +28,14 @@ struct Mover {
     std::span<const Body> objects;
     std::span<const safety::RiskObject> at_risk;
     std::span<const safety::Disturbance> disturbances;
-    double friction, tolerable_J;
+    double tolerable_J;
     const Unseen& unseen;
 
     // The nearest places of the object that are tolerable to those: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
     std::vector<NewPlace> places(std::size_t o, const Landscape::Places& around) const {
-        const Elsewhere elsewhere{toppling_of(objects[o], objects[o].open_tipping, friction),
-                                  toppling_of(objects[o], objects[o].level_tipping, friction)};
+        const Elsewhere elsewhere{toppling_of(objects[o], objects[o].open_tipping),
+                                  toppling_of(objects[o], objects[o].level_tipping)};
         std::map<std::pair<int, int>, NewPlace> nearest;
         const std::int32_t half = around.side / 2;
         const double voxel_m = solids.voxel_m();
@@ -52,8 +52,8 @@ struct Mover {
                     static_cast<int>(safety::nearest_direction(place.di, place.dj))};
                 const auto known = nearest.find(key);
                 if (known != nearest.end() && known->second.way_m <= place.way_m) continue;
-                const auto slide = physics::slide_elsewhere(around, a, b, at_risk[o].mass_kg,
-                                                            friction, safety::directions());
+                const auto slide = physics::slide_elsewhere(
+                    around, a, b, at_risk[o].mass_kg, at_risk[o].friction, safety::directions());
                 if (!slide.reachable || !weigh(o, slide.slide, elsewhere, place)) continue;
                 nearest.insert_or_assign(key, std::move(place));
             }
@@ -116,15 +116,15 @@ bool fell_before(std::span<const safety::Disturbance> disturbances,
 // tolerated.
 void find_fixing(const safety::RiskObject& object,
                  std::span<const safety::Disturbance> disturbances,
-                 std::span<const std::vector<safety::Risk>> risk, std::size_t o, double friction,
-                 double tolerable_J, Suggestion& out) {
+                 std::span<const std::vector<safety::Risk>> risk, std::size_t o, double tolerable_J,
+                 Suggestion& out) {
     const double weight = object.mass_kg * physics::gravity, top = std::max(object.height_m, 1e-3);
     out.hold = {0, top};
     for (std::size_t d = 0; d < disturbances.size(); ++d) {
         if (o >= disturbances[d].strongest.size() || risk[d][o].mean_J <= tolerable_J) continue;
         const safety::Push& push = disturbances[d].strongest[o];
         const double tips = (push.force_N * push.height_m - weight * object.base_width_m / 2) / top;
-        const double force_N = std::max(tips, push.force_N - friction * weight);
+        const double force_N = std::max(tips, push.force_N - object.friction * weight);
         if (!(force_N > out.hold.force_N)) continue;
         out.hold.force_N = force_N;
         out.hold_against = disturbances[d].name;
@@ -147,8 +147,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const Body> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
-                               std::span<const std::vector<safety::Risk>> risk, double friction,
-                               double tolerable_J, const Unseen& unseen) {
+                               std::span<const std::vector<safety::Risk>> risk, double tolerable_J,
+                               const Unseen& unseen) {
     constexpr double nearly_all = 0.9;
     const SolidCells& cells = solids.cells();
     std::vector<Suggestion> out(at_risk.size());
@@ -171,16 +171,18 @@ std::vector<Suggestion> advise(const SolidScene& solids,
             continue;
         }
         out[o].kind = Suggestion::Kind::fix;
-        find_fixing(at_risk[o], disturbances, risk, o, friction, tolerable_J, out[o]);
+        find_fixing(at_risk[o], disturbances, risk, o, tolerable_J, out[o]);
         chosen.push_back(o);
     }
     std::stable_sort(chosen.begin(), chosen.end(),
                      [&](std::size_t a, std::size_t b) { return worst[a] > worst[b]; });
     if (chosen.size() > most_moved) chosen.resize(most_moved);
 
+    std::vector<double> friction;
+    for (const safety::RiskObject& object : at_risk) friction.push_back(object.friction);
     const auto around = physics::places_of(cells, object_of_primitive, bodies, chosen, friction,
                                            look_around_m + see_edges_m, unseen);
-    const Mover mover{solids, objects, at_risk, disturbances, friction, tolerable_J, unseen};
+    const Mover mover{solids, objects, at_risk, disturbances, tolerable_J, unseen};
     std::vector<safety::Placement> placements;
     std::vector<double> all_J;  // the largest risk there
     for (std::size_t n = 0; n < chosen.size(); ++n) {

@@ -38,8 +38,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const Body> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
-                               std::span<const std::vector<safety::Risk>> risk, double friction,
-                               double tolerable_J, const Unseen& unseen = {});
+                               std::span<const std::vector<safety::Risk>> risk, double tolerable_J,
+                               const Unseen& unseen = {});
 
 // Whether what is known of object o, and with it its category, is to be doubted: how it stands is
 // one of several readings of the scan, none of them likelier than not; or it stood when it was

@@ -45,6 +45,7 @@ struct RiskObject {
     double barrier_error_J = 0;  // one standard error
     bool slides = false;         // rather than that it tips
     physics::Drawers drawers;    // that people may pull out
+    double friction = 0.3;       // coefficient, on what it stands on
     double floor_shakes = 1;     // in earthquakes, so many times as strongly as the ground floor
     // Not as measured, but as at an end of that error (risk_error.h): the border of its support
     // lies so much further out, and the roots of its barriers are larger by so much.

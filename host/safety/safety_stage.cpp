@@ -51,6 +51,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
         r.barrier_error_J = o.seen_error_J;
         r.floor_shakes = o.floor_shakes;
         r.drawers = o.drawers;
+        r.friction = o.friction;
         r.slides = o.instability.mode == physics::Instability::Mode::slide;
         r.base_m = o.candidate.support_height_m;
         r.center = o.candidate.body.center;
@@ -180,8 +181,7 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     });
     stage("advice", [&] {
         out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
-                            out.disturbances, out.risk, options.friction, options.tolerable_J,
-                            unseen_of(parts));
+                            out.disturbances, out.risk, options.tolerable_J, unseen_of(parts));
         const std::vector<Fastening> fastenings = find_fastenings(parts, objects);
         const std::vector<std::int32_t> legs =
             find_legs(*parts.solids, objects.object_of_primitive, objects.objects);

@@ -119,7 +119,8 @@ class Standing {
     }
     double slides_m(double impulse_Ns) const {
         const double speed = impulse_Ns / least_mass_kg();
-        return speed * speed / (2 * scene_.friction * physics::gravity);
+        const double friction = o_.friction > 0 ? o_.friction : scene_.friction;
+        return speed * speed / (2 * friction * physics::gravity);
     }
 
   private:

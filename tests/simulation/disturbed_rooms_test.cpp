@@ -207,7 +207,7 @@ TEST_F(SlowDisturbances, Earthquake) {
             safety::EarthquakeOptions options;
             options.record = record(seed);
             return std::vector{
-                safety::earthquake_field(*device, scene.around, scene.at_risk, mu, options)};
+                safety::earthquake_field(*device, scene.around, scene.at_risk, options)};
         },
         [&](Simulation& simulation, const test::AssessedRoom&, std::size_t, std::size_t e,
             const safety::WorkSample&, std::uint64_t seed) {

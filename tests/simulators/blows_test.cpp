@@ -61,7 +61,6 @@ constexpr std::size_t record_count = 50;
 
 struct ShakenBlock {
     safety::Profile body;
-    double friction = 0;
     safety::Shaking shaking;
 
     ShakenBlock(Random& random, const std::vector<Accelerogram>& records) {
@@ -72,9 +71,9 @@ struct ShakenBlock {
         // Its whole base stands on what carries it.
         body.support_ahead_m = width / 2 + random.uniform(0, 0.3);
         body.support_behind_m = width / 2 + random.uniform(0, 0.3);
-        friction = random.uniform(0.2, 0.8);
+        body.friction = random.uniform(0.2, 0.8);
         shaking.record = static_cast<std::uint32_t>(random.below(records.size()));
-        const double moves = physics::gravity * std::min(friction, 1 / slender);
+        const double moves = physics::gravity * std::min(body.friction, 1 / slender);
         const double scale = moves * least_peak *
                              std::pow(most_peak / least_peak, random.uniform()) /
                              records[shaking.record].peak_m_s2();
@@ -91,7 +90,7 @@ struct ShakenBlock {
         s.along *= times;
         s.across *= times;
         s.up *= times;
-        return safety::shake(device, {&body, 1}, records, {&s, 1}, friction)[0];
+        return safety::shake(device, {&body, 1}, records, {&s, 1})[0];
     }
 };
 
@@ -113,7 +112,7 @@ void judge_rocking(std::size_t count, double least_alike, double least_both) {
         };
         cases.push_back({{"half_width_m", block.body.ahead_m},
                          {"half_height_m", block.body.height_m},
-                         {"friction", block.friction},
+                         {"friction", block.body.friction},
                          {"support_m", {block.body.support_behind_m, block.body.support_ahead_m}},
                          {"record", block.shaking.record},
                          {"scale", {block.shaking.along, block.shaking.across, block.shaking.up}},

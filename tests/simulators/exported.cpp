@@ -57,14 +57,13 @@ void write_expected(const Exported& each) {
                 {"low", part.part->low}, {"high", part.part->high}, {"mesh", is_mesh(part.shape)}};
         bodies[named.name] = {{"fixed", body.fixed},
                               {"mass", body.mass_kg},
+                              {"friction", named.friction},
                               {"center", body.center_m},
                               {"inertia", body.inertia_kg_m2},
                               {"colours", !body.visual.triangle.empty()},
                               {"parts", parts}};
     }
-    const nlohmann::json all{{"friction", each.scene.friction},
-                             {"gravity", each.scene.gravity_m_s2},
-                             {"bodies", bodies}};
+    const nlohmann::json all{{"gravity", each.scene.gravity_m_s2}, {"bodies", bodies}};
     std::ofstream(each.folder / "expected.json") << all.dump(1);
 }
 

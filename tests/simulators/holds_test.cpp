@@ -40,7 +40,7 @@ void judge_holds(int count) {
             else
                 load.force_N =
                     times * weight * std::min(blow_friction, load.half_base_m / load.height_m);
-            const double W = safety::hand_work_J(object, load, blow_friction);
+            const double W = safety::hand_work_J(object, load);
             const bool falls = safety::instability(object, {W, 1, load.way}) > 0;
             holds.push_back({{"way", {x, y}},
                              {"height_m", load.height_m},

@@ -54,7 +54,8 @@ def check(expected, file):
             near_inertia(name, found.inertia, matrix(*found.iquat), body)
         seen = check_geoms(expected, model, data, name)
         if file == 'scene.xml':
-            near('friction', [model.geom_friction[g][0] for g in range(model.ngeom)], [expected.friction] * model.ngeom, 1e-9)
+            rubs = [model.geom_friction[g][0] for g in range(model.ngeom) if model.geom_bodyid[g] == found.id and model.geom_contype[g]]
+            near(name, rubs, [body['friction']] * len(rubs), 1e-9)
             for geom in seen:
                 mesh = model.geom_dataid[geom]
                 assert model.geom_matid[geom] >= 0 and model.mesh_texcoordnum[mesh] > 0, name

@@ -137,7 +137,7 @@ void expect_model(const sdf::Model& model, const NamedBody& named, const Exporte
         sdf::ElementPtr element = collision->Element();
         for (const char* within : {"surface", "friction", "ode"})
             element = element->GetElement(within);
-        EXPECT_NEAR(element->Get<double>("mu"), each.scene.friction, 1e-9);
+        EXPECT_NEAR(element->Get<double>("mu"), named.friction, 1e-9);
         bounds_of(*collision, body.center_m, each.folder)
             .expect(*part.part, round_tolerance_m + 1e-6);
     }

@@ -24,13 +24,13 @@ def check_rules(stage, file):
     assert not found, found
 
 
-def check_part(prim, place, boxes):
+def check_part(prim, place, friction, boxes):
     bounds = boxes.ComputeWorldBound(prim).ComputeAlignedRange()
     near(prim.GetName(), [bounds.GetMin(), bounds.GetMax()], [place['low'], place['high']], WITHIN_M)
     if place['mesh']:
         assert UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get() == 'convexHull'
     material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial('physics')
-    near('friction', UsdPhysics.MaterialAPI(material.GetPrim()).GetStaticFrictionAttr().Get(), expected.friction, 1e-6)
+    near('friction', UsdPhysics.MaterialAPI(material.GetPrim()).GetStaticFrictionAttr().Get(), friction, 1e-6)
 
 
 def check(prim, body, boxes):
@@ -46,7 +46,7 @@ def check(prim, body, boxes):
     parts = {child.GetName(): child for child in prim.GetChildren() if child.HasAPI(UsdPhysics.CollisionAPI)}
     assert set(parts) == set(body['parts']), name
     for part, child in parts.items():
-        check_part(child, body['parts'][part], boxes)
+        check_part(child, body['parts'][part], body['friction'], boxes)
     seen = prim.GetChild('visual')
     assert bool(seen) == body['colours'], name
     if seen:

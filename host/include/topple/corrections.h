@@ -16,7 +16,16 @@
 namespace topple {
 
 struct Correction {
-    enum class Kind : std::uint8_t { one_thing, apart, fixed, not_there, hollow, mass, name };
+    enum class Kind : std::uint8_t {
+        one_thing,
+        apart,
+        fixed,
+        not_there,
+        hollow,
+        mass,
+        name,
+        friction
+    };
 
     Kind kind = Kind::name;
     std::vector<Vec3> at_m;    // one spot at least; of one_thing two
@@ -25,6 +34,7 @@ struct Correction {
     double mass_kg = 0;        // of mass: of all of the object
     std::string name;          // of name
     std::string was{};         // what is to be kept of it for people, as its number before; or ""
+    double coefficient = 0;    // of friction: of all of the object, on what it stands on
 };
 
 // "one_thing", "apart", ..: as files call them.

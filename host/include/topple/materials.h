@@ -17,6 +17,7 @@ struct ThingKind {
     double fill = 1;           // share of that box that is solid from outside: hollows closed count
     double density_kg_m3 = 0;  // mass over that solid's volume, the median of such things
     double spread = 0;         // the standard deviation of its logarithm among them
+    double friction = 0;       // coefficient, of those so named; 0: that of all contacts
 };
 
 using Materials = std::vector<ThingKind>;

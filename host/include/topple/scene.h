@@ -245,6 +245,8 @@ struct Object {
     // "solid", of the density that was given all through; "closed": furniture that is boards of
     // that density around ParseOptions::contents_kg_m3; or "hollow": a shell, as a correction says.
     std::string mass_model = "solid";
+    // Coefficient of friction, by its name or a correction; NaN: Scene::friction.
+    double friction = std::numeric_limits<double>::quiet_NaN();
     Vec3 center_of_mass_m{};
     // How high what it stands on lies along Scene::up, so that a place p is dot(up, p) -
     // support_height_m above that; and how high the centre of mass is above it, less than 0 for

@@ -134,7 +134,7 @@ function givenText(scene, ones) {
   const named = nameToldWith(scene, one), at = correctedPlace(scene, one);
   const what = {
     one_thing: 'one thing', apart: 'apart from others', fixed: 'counted as fixed; this holds only while its strap does', not_there: 'counted as not there',
-    hollow: `hollow, walls of ${metres(one.wall_m || 0)}`, mass: number(one.kg, 'kg'), name: `called \u201c${one.name}\u201d`,
+    hollow: `hollow, walls of ${metres(one.wall_m || 0)}`, mass: number(one.kg, 'kg'), friction: `friction ${number(one.coefficient)}`, name: `called \u201c${one.name}\u201d`,
   }[one.do] || one.do;
   const who = things.length ? listed(things.map(id => objectName(scene, id))) : named || (one.at_m.length > 1 ? 'parts' : 'what is');
   return `${capital(who)}${at ? ` at ${at}` : ''}${one.was ? ` (before: ${one.was})` : ''}: ${alone ? 'a thing by itself' : what}${missed ? ` (of this parse: ${missed.outcome})` : ''}`;

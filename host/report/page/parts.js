@@ -84,7 +84,7 @@ class PartsPanel {
       if (!about || !some([...about.parts, ...about.others], parts)) continue;
       const same = about.kind === kind && alike(about.parts, parts);
       if (same && ['one_thing', 'fixed', 'not_there', 'apart'].includes(kind)) return 'That is noted already.';
-      if (about.kind === kind && ['mass', 'hollow', 'name'].includes(kind) && some(about.parts, parts)) return first('otherwise of this already');
+      if (about.kind === kind && ['mass', 'friction', 'hollow', 'name'].includes(kind) && some(about.parts, parts)) return first('otherwise of this already');
       if (about.kind === 'not_there' && some(about.parts, parts)) return first('that this is not there');
       if (about.kind === 'apart' && (kind === 'one_thing' && some(about.parts, parts) && some(about.others, parts) ||
         kind === 'fixed' && some(about.parts, parts) && ofBuilding(about.others))) return first('that these are a thing by themselves');
@@ -181,6 +181,11 @@ class PartsPanel {
         if (!(kg > 0) || !isFinite(kg)) this.refuse('Write a mass above 0 kg first.');
         else this.note('mass', {kg}, `${kg} kg`);
       })),
+      form(number('mend-friction', 'friction', '', '', 'any'), act('friction', 'set friction', () => {
+        const coefficient = value('mend-friction');
+        if (!(coefficient > 0 && coefficient <= 10)) this.refuse('Write a coefficient of friction first: above 0, mostly 0.2 to 1.');
+        else this.note('friction', {coefficient}, `friction ${coefficient}`);
+      })),
       form(number('mend-wall', 'walls', 'cm', '2', 'any'), act('hollow', 'hollow', () => {
         const cm = value('mend-wall');
         if (!(cm > 0) || !isFinite(cm)) this.refuse('Write how thick the walls are, above 0 cm.');
@@ -222,7 +227,7 @@ class PartsPanel {
 
   // What is said of all of an object is said at a few of its parts.
   enoughOf(kind, parts) {
-    if (!['hollow', 'mass', 'name'].includes(kind)) return parts;
+    if (!['hollow', 'mass', 'friction', 'name'].includes(kind)) return parts;
     const owners = [...new Set(parts.map(part => this.owner.get(part)))], each = Math.max(1, Math.floor(mostSpots / owners.length));
     return owners.flatMap(owner => this.corrections.told(parts.filter(part => this.owner.get(part) === owner)).slice(0, each));
   }

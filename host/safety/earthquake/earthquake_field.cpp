@@ -58,8 +58,7 @@ struct Shaken {
     double together = 0;  // correlation of the slips in both planes
 };
 
-Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
-                 const PlaneMotions& motions) {
+Shaken shaken_by(const ShakenObject& object, double mass_kg, const PlaneMotions& motions) {
     Shaken out;
     out.together = motions.together;
     for (std::size_t p = 0; p < 2; ++p) {
@@ -73,8 +72,8 @@ Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
         ahead = {ahead.way, m.overturned_ahead(), m.slid_ahead_m, body.support_ahead_m};
         behind = {behind.way, m.overturned_behind(), m.slid_behind_m, body.support_behind_m};
         const double slid = std::max(m.slid_ahead_m, m.slid_behind_m);
-        out.energy_J = std::max(out.energy_J,
-                                mass_kg * std::max(m.raised_J_kg(body), friction * gravity * slid));
+        out.energy_J = std::max(
+            out.energy_J, mass_kg * std::max(m.raised_J_kg(body), body.friction * gravity * slid));
         out.raised_J = std::max(out.raised_J, mass_kg * m.raised_J_kg(body));
     }
     return out;
@@ -156,11 +155,10 @@ std::vector<WorkSample> work_of(const std::vector<Shaken>& shaken, const RiskObj
     return work;
 }
 
-std::vector<Shaken> shaken_by_all(const ShakenObject& body, double mass_kg, double friction,
+std::vector<Shaken> shaken_by_all(const ShakenObject& body, double mass_kg,
                                   const std::vector<PlaneMotions>& motions) {
     std::vector<Shaken> out;
-    for (const PlaneMotions& motion : motions)
-        out.push_back(shaken_by(body, mass_kg, friction, motion));
+    for (const PlaneMotions& motion : motions) out.push_back(shaken_by(body, mass_kg, motion));
     return out;
 }
 
@@ -235,7 +233,7 @@ SpaceField over_contacts(const Contacts& contacts, std::span<const RiskObject> o
 }  // namespace
 
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
-                             std::span<const RiskObject> objects, double friction,
+                             std::span<const RiskObject> objects,
                              const EarthquakeOptions& options) {
     Disturbance out;
     out.name = earthquake_kind().name;
@@ -272,34 +270,31 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     for (const GroundEvent& event : events)
         peaks.push_back(event.scale * records[event.record].peak_m_s2());
 
-    const Motions motions = shake_objects(device, bodies, which, records, events, friction, true);
+    const Motions motions = shake_objects(device, bodies, which, records, events, true);
     for (const std::size_t o : which) {
         for (std::size_t e = 0; e < events.size(); ++e) {
             const double force = objects[o].mass_kg * objects[o].floor_shakes * peaks[e];
             if (force > out.strongest[o].force_N)
                 out.strongest[o] = {force, bodies[o].body[0].height_m};
         }
-        out.response[o] = [shaken =
-                               shaken_by_all(bodies[o], objects[o].mass_kg, friction, motions[o])](
+        out.response[o] = [shaken = shaken_by_all(bodies[o], objects[o].mass_kg, motions[o])](
                               const RiskObject& object) { return work_of(shaken, object); };
         out.work[o] = out.response[o](objects[o]);
     }
     // What stands on a wider or narrower base moves in another way.
-    out.work_if = [&device, solid_columns, stances, which, records, events,
-                   friction](std::span<const RiskObject> changed) {
+    out.work_if = [&device, solid_columns, stances, which, records,
+                   events](std::span<const RiskObject> changed) {
         std::vector<ShakenObject> shaken(changed.size());
         for (const std::size_t o : which)
             shaken[o] = shaken_object(changed[o], stances[o], *solid_columns);
-        const Motions moved = shake_objects(device, shaken, which, records, events, friction, true);
+        const Motions moved = shake_objects(device, shaken, which, records, events, true);
         std::vector<std::vector<WorkSample>> work(changed.size());
         for (const std::size_t o : which)
-            work[o] = work_of(shaken_by_all(shaken[o], changed[o].mass_kg, friction, moved[o]),
-                              changed[o]);
+            work[o] = work_of(shaken_by_all(shaken[o], changed[o].mass_kg, moved[o]), changed[o]);
         return work;
     };
-    out.fragility =
-        fragilities(device, standing, which, records, friction, options.floor_amplification,
-                    options.hazard ? &*options.hazard : nullptr);
+    out.fragility = fragilities(device, standing, which, records, options.floor_amplification,
+                                options.hazard ? &*options.hazard : nullptr);
     const Contacts contacts{*surroundings.cells, which, cells, stances};
     out.samples = arrows_at(contacts, objects, events, peaks);
     if (options.over_space) {

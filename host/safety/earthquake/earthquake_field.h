@@ -37,8 +37,7 @@ struct EarthquakeOptions {
 // (RiskObject::floor_shakes). Over space: at the cells on which things stand, v^2 / 2 of the peak
 // velocity v there, joules per kilogram, which all ways of shaking share alike.
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
-                             std::span<const RiskObject> objects, double friction,
-                             const EarthquakeOptions& options);
+                             std::span<const RiskObject> objects, const EarthquakeOptions& options);
 
 const DisturbanceKind& earthquake_kind();
 

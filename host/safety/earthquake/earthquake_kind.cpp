@@ -47,8 +47,7 @@ const DisturbanceKind& earthquake_kind() {
                 earthquake.floor_amplification = options.floor_amplification;
                 earthquake.hazard = options.hazard;
                 earthquake.over_space = options.space_fields;
-                return earthquake_field(device, surroundings, objects, options.friction,
-                                        earthquake);
+                return earthquake_field(device, surroundings, objects, earthquake);
             },
         .events =
             [](const ParseOptions& options) {

@@ -99,19 +99,20 @@ Shaking shaking_in(const ShakenObject& object, std::size_t plane, std::uint32_t 
 
 // Friction is too little to lift its edges, by far more than rounding, and its support ends
 // nowhere: it only slides.
-bool can_fall(const Profile& body, const Shaking& shaking, double friction) {
+bool can_fall(const Profile& body, const Shaking& shaking) {
     const bool endless = std::isinf(body.support_ahead_m) && std::isinf(body.support_behind_m);
-    return !endless || 1.001 * friction * shaking.grip > body.slenderness();
+    return !endless || 1.001 * body.friction * shaking.grip > body.slenderness();
 }
 
 // By object, then event: whether it falls. Of those not in `which` none. Either plane is enough, so
-// that the second is shaken only in events that it stands in the first.
+// that the second is shaken only in events that it stands in the first. They rub by
+// `least_friction` at least.
 std::vector<std::vector<std::uint8_t>> falls_in(device::Device& device,
                                                 std::span<const ShakenObject> objects,
                                                 std::span<const std::size_t> which,
                                                 std::span<const Accelerogram> records,
                                                 std::span<const GroundEvent> events,
-                                                double friction) {
+                                                double least_friction = 0) {
     std::vector<std::vector<std::uint8_t>> out(objects.size());
     for (const std::size_t o : which) out[o].assign(events.size(), objects[o].held ? 0 : 1);
     const std::vector<LevelMoments> moments(records.begin(), records.end());
@@ -120,19 +121,20 @@ std::vector<std::vector<std::uint8_t>> falls_in(device::Device& device,
         std::vector<Shaking> shakings;
         std::vector<std::uint8_t*> fell;  // of each shaking
         for (const std::size_t o : which) {
-            const Profile& body = objects[o].body[p];
+            Profile body = objects[o].body[p];
+            body.friction = std::max(body.friction, least_friction);
             for (std::size_t e = 0; e < events.size(); ++e) {
                 if (out[o][e] != 0) continue;
                 const Shaking shaking =
                     shaking_in(objects[o], p, static_cast<std::uint32_t>(bodies.size()), events[e],
                                moments[events[e].record]);
-                if (!can_fall(body, shaking, friction)) continue;
+                if (!can_fall(body, shaking)) continue;
                 shakings.push_back(shaking);
                 fell.push_back(&out[o][e]);
             }
             bodies.push_back(body);
         }
-        const std::vector<Motion> found = shake(device, bodies, records, shakings, friction);
+        const std::vector<Motion> found = shake(device, bodies, records, shakings);
         for (std::size_t n = 0; n < found.size(); ++n)
             if (falls(objects[which[shakings[n].body]], p, found[n])) *fell[n] = 1;
     }
@@ -160,6 +162,7 @@ ShakenObject shaken_object(const RiskObject& object, const MassSpread& stance,
     out.base_error_share = object.base_error_share;
     for (std::size_t p = 0; p < 2; ++p) {
         out.body[p] = profile(object, stance, columns, out.way[p][0], out.way[p][1]);
+        out.body[p].friction = object.friction;
         out.held = out.held && out.body[p].least_base_m() > 0;
         const Vec3 ahead{out.way[p][0], out.way[p][1], 0};
         out.lower[p] = {rests_lower(object, ahead), rests_lower(object, opposite(ahead))};
@@ -175,7 +178,7 @@ bool falls(const ShakenObject& object, std::size_t plane, const Motion& motion) 
 
 Motions shake_objects(device::Device& device, std::span<const ShakenObject> objects,
                       std::span<const std::size_t> which, std::span<const Accelerogram> records,
-                      std::span<const GroundEvent> events, double friction, bool endless) {
+                      std::span<const GroundEvent> events, bool endless) {
     std::vector<Profile> bodies;
     std::vector<Shaking> shakings;
     const std::vector<LevelMoments> moments(records.begin(), records.end());
@@ -189,7 +192,7 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
                 shakings.push_back(shaking_in(objects[o], p, last, e, moments[e.record]));
         }
     }
-    const std::vector<Motion> found = shake(device, bodies, records, shakings, friction);
+    const std::vector<Motion> found = shake(device, bodies, records, shakings);
     Motions out(objects.size());
     for (std::size_t w = 0; w < which.size(); ++w) {
         for (std::size_t e = 0; e < events.size(); ++e) {
@@ -205,7 +208,7 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
 
 std::vector<Fragility> fragilities(device::Device& device, std::span<const ShakenObject> objects,
                                    std::span<const std::size_t> which,
-                                   std::span<const Accelerogram> records, double friction,
+                                   std::span<const Accelerogram> records,
                                    double floor_amplification, const HazardCurve* hazard) {
     std::vector<Fragility> out(objects.size());
     std::vector<GroundEvent> events;
@@ -238,7 +241,7 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
         }
         return found;
     };
-    const auto fell = falls_in(device, objects, which, records, events, friction);
+    const auto fell = falls_in(device, objects, which, records, events);
     for (const std::size_t o : which) {
         const Counts counted = counts(fell[o]);
         Fragility& f = out[o];
@@ -246,8 +249,9 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
         f.firm_pga_g = f.pga_g;
         if (std::isfinite(f.pga_dispersion)) {
             // What slides does not go with b / h.
-            const double error =
-                slenderness(objects[o]) < friction ? objects[o].base_error_share : 0;
+            const double error = slenderness(objects[o]) < objects[o].body[0].friction
+                                     ? objects[o].base_error_share
+                                     : 0;
             const auto with_error = [&](double dispersion) {
                 return std::min(most_dispersion, std::hypot(dispersion, error));
             };
@@ -265,9 +269,9 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
     // Of what may slide before it rocks, shaken askew.
     std::vector<std::size_t> sliding;
     for (const std::size_t o : which)
-        if (objects[o].held && slenderness(objects[o]) > 0.6 * friction) sliding.push_back(o);
-    const auto fell_firm =
-        falls_in(device, objects, sliding, records, events, std::max(friction, firm_friction));
+        if (objects[o].held && slenderness(objects[o]) > 0.6 * objects[o].body[0].friction)
+            sliding.push_back(o);
+    const auto fell_firm = falls_in(device, objects, sliding, records, events, firm_friction);
     for (const std::size_t o : sliding)
         out[o].firm_pga_g = fragility_of(counts(fell_firm[o]).peaks).pga_g;
     return out;

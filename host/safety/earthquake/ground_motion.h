@@ -52,7 +52,7 @@ struct PlaneMotions {
 using Motions = std::vector<std::vector<PlaneMotions>>;
 Motions shake_objects(device::Device& device, std::span<const ShakenObject> objects,
                       std::span<const std::size_t> which, std::span<const Accelerogram> records,
-                      std::span<const GroundEvent> events, double friction, bool endless);
+                      std::span<const GroundEvent> events, bool endless);
 
 // Chances of falling over the strength of shaking: each record scaled to peaks of 0.05 g and so on
 // by factors of 1.4 up to 4 g, on the ground, from 16 directions; what the objects stand on shakes
@@ -62,7 +62,7 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
 // `which`, and for all where a record has no peak.
 std::vector<Fragility> fragilities(device::Device& device, std::span<const ShakenObject> objects,
                                    std::span<const std::size_t> which,
-                                   std::span<const Accelerogram> records, double friction,
+                                   std::span<const Accelerogram> records,
                                    double floor_amplification, const HazardCurve* hazard);
 
 }  // namespace topple::safety

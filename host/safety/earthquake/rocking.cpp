@@ -158,7 +158,7 @@ void run_batch(device::Device& device, const device::Buffer<float>& body, std::s
     }
 }
 
-std::vector<float> planes_of(std::span<const Profile> bodies, double friction) {
+std::vector<float> planes_of(std::span<const Profile> bodies) {
     std::vector<float> out;
     const auto plane = [&](auto value) {
         for (const Profile& body : bodies)
@@ -168,7 +168,7 @@ std::vector<float> planes_of(std::span<const Profile> bodies, double friction) {
     plane([](const Profile& b) { return b.behind_m; });
     plane([](const Profile& b) { return b.height_m; });
     plane([](const Profile& b) { return b.gyration_m; });
-    plane([&](const Profile&) { return friction; });
+    plane([](const Profile& b) { return b.friction; });
     plane([](const Profile& b) { return b.support_ahead_m; });
     plane([](const Profile& b) { return b.support_behind_m; });
     return out;
@@ -201,8 +201,8 @@ double Motion::raised_J_kg(const Profile& body) const {
 }
 
 std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodies,
-                          std::span<const Accelerogram> records, std::span<const Shaking> shakings,
-                          double friction) {
+                          std::span<const Accelerogram> records,
+                          std::span<const Shaking> shakings) {
     std::vector<Motion> out(shakings.size());
     // By how finely the body's steps are to be cut: each class has steps half as long.
     std::vector<int> fineness(bodies.size(), -1);
@@ -222,7 +222,7 @@ std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodie
         const Shaking& s = shakings[n];
         if (fineness[s.body] < 0) continue;
         const Profile& body = bodies[s.body];
-        const double least = std::min(s.grip * friction, body.slenderness());
+        const double least = std::min(s.grip * body.friction, body.slenderness());
         order.push_back({fineness[s.body], s.record,
                          std::hypot(s.along, s.across) / std::max(least, 1e-6),
                          static_cast<std::uint32_t>(n)});
@@ -234,7 +234,7 @@ std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodie
         return a.ease != b.ease ? a.ease < b.ease : a.index < b.index;
     });
     if (order.empty()) return out;
-    const auto body = on(device, planes_of(bodies, friction), "body");
+    const auto body = on(device, planes_of(bodies), "body");
     for (std::size_t n = 0; n < order.size();) {
         Chunks chunks;
         Batch batch;

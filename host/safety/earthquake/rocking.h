@@ -19,6 +19,7 @@ struct Profile {
     double ahead_m = 0, behind_m = 0, height_m = 0, gyration_m = 0;
     // How far the support goes on under the centre each way, at least.
     double support_ahead_m = 0, support_behind_m = 0;
+    double friction = 0.3;  // coefficient
     double least_base_m() const { return ahead_m < behind_m ? ahead_m : behind_m; }
     double slenderness() const { return least_base_m() / height_m; }  // where it rocks, over g
 };
@@ -48,7 +49,6 @@ struct Motion {
 // Motions are sensitive, as in nature: tests/kernels says of how many the end differs from that of
 // finer steps. Bodies without a height stay as they are.
 std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodies,
-                          std::span<const Accelerogram> records, std::span<const Shaking> shakings,
-                          double friction);
+                          std::span<const Accelerogram> records, std::span<const Shaking> shakings);
 
 }  // namespace topple::safety

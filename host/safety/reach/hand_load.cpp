@@ -18,8 +18,8 @@ double share_of(double barrier_J, double share) {
 
 }  // namespace
 
-double hand_work_J(const RiskObject& object, const HandLoad& load, double friction) {
-    const double weight = object.mass_kg * physics::gravity, rubs = friction * weight;
+double hand_work_J(const RiskObject& object, const HandLoad& load) {
+    const double weight = object.mass_kg * physics::gravity, rubs = object.friction * weight;
     const double towards = push_barrier_J(object, load.way);
     if (load.struck_kg > 0)
         return load.struck_kg * load.struck_m_s * load.struck_m_s / 2 *
@@ -30,7 +30,7 @@ double hand_work_J(const RiskObject& object, const HandLoad& load, double fricti
     if (load.climber_Nm > 0) return share_of(over_edge, moment > 0 ? load.climber_Nm / moment : 1);
     if (!(load.force_N > 0)) return 0;
     double most = 0;
-    if (load.half_base_m <= friction * load.height_m)
+    if (load.half_base_m <= object.friction * load.height_m)
         most = share_of(over_edge, moment > 0 ? load.force_N * load.height_m / moment : 1);
     const double distance = slide_towards_m(object, load.way, 0);
     if (std::isfinite(distance) && rubs > 0) {

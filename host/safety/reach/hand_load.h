@@ -26,7 +26,7 @@ struct HandLoad {
 // W, joules: the barrier that way where the load beats it, and else the share of it that the force
 // is of what it would take; of what is taken along the share of its way, too.
 // What is struck takes of that blow as much as stays with both.
-double hand_work_J(const RiskObject& object, const HandLoad& load, double friction);
+double hand_work_J(const RiskObject& object, const HandLoad& load);
 // What the object takes then of a blow, newton seconds.
 double blow_impulse_Ns(const RiskObject& object, const HandLoad& load);
 

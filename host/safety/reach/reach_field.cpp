@@ -119,13 +119,11 @@ std::vector<Stand> standing_places(const WalkableMap& map) {
 class Reaching {
   public:
     Reaching(device::Device& device, const Surroundings& surroundings,
-             std::span<const RiskObject> objects, std::span<const PersonKind* const> kinds,
-             double friction)
+             std::span<const RiskObject> objects, std::span<const PersonKind* const> kinds)
         : device_(device),
           surroundings_(surroundings),
           objects_(objects),
           kinds_(kinds),
-          friction_(friction),
           solids_(surroundings, objects),
           cells_(cells_of_objects(solids_.object, objects.size())),
           grips_(objects.size()) {
@@ -326,11 +324,11 @@ class Reaching {
             if (force * load.height_m > most.force_N * most.height_m) most = {force, load.height_m};
         }
         if (loads.empty()) return;
-        out.response[o] = [loads, friction = friction_](const RiskObject& object) {
+        out.response[o] = [loads](const RiskObject& object) {
             std::vector<WorkSample> work;
             for (auto [load, probability] : loads) {
                 load.half_base_m = std::max(0.0, load.half_base_m + object.border_shift_m);
-                work.push_back({hand_work_J(object, load, friction), probability, load.way});
+                work.push_back({hand_work_J(object, load), probability, load.way});
                 if (load.struck_kg > 0) work.back().height_m = load.height_m;
             }
             return work;
@@ -397,7 +395,6 @@ class Reaching {
     const Surroundings& surroundings_;
     std::span<const RiskObject> objects_;
     std::span<const PersonKind* const> kinds_;
-    double friction_;
     Solids solids_;
     std::vector<std::vector<std::uint32_t>> cells_;  // by object
     std::vector<MassSpread> stances_;                // by object
@@ -408,8 +405,8 @@ class Reaching {
 
 Disturbance reach_field(device::Device& device, const Surroundings& surroundings,
                         std::span<const RiskObject> objects,
-                        std::span<const PersonKind* const> kinds, double friction) {
-    return Reaching(device, surroundings, objects, kinds, friction).disturbance();
+                        std::span<const PersonKind* const> kinds) {
+    return Reaching(device, surroundings, objects, kinds).disturbance();
 }
 
 }  // namespace topple::safety

@@ -20,7 +20,7 @@ namespace topple::safety {
 // children climb.
 Disturbance reach_field(device::Device& device, const Surroundings& surroundings,
                         std::span<const RiskObject> objects,
-                        std::span<const PersonKind* const> kinds, double friction);
+                        std::span<const PersonKind* const> kinds);
 
 const DisturbanceKind& reach_kind();
 

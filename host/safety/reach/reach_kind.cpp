@@ -41,8 +41,7 @@ const DisturbanceKind& reach_kind() {
         .field =
             [](device::Device& device, const Surroundings& surroundings,
                std::span<const RiskObject> objects, const ParseOptions& options) {
-                return reach_field(device, surroundings, objects, reaching(options),
-                                   options.friction);
+                return reach_field(device, surroundings, objects, reaching(options));
             },
         .events =
             [](const ParseOptions& options) {

@@ -212,9 +212,9 @@ double wind_work(const RiskObject& object, const WindLoad& load, const WindOptio
         const double ratio = force / threshold;
         return ratio * (ratio < 1 ? barrier : std::max(barrier, own_energy));
     };
-    const double rubs = options.friction * weight;
+    const double rubs = object.friction * weight;
     double most = 0;
-    const double tips = tipping_force(load, options.friction) * weight;
+    const double tips = tipping_force(load, object.friction) * weight;
     if (std::isfinite(tips))
         most = work(tips, over_edge_J(object, load.way),
                     tipping_energy(object.mass_kg, load.height_m, load.half_base_m));

@@ -16,7 +16,6 @@ namespace topple::safety {
 struct WindOptions {
     double speed_m_s = 12;
     double air_density_kg_m3 = 1.2, drag_coefficient = 1.3;
-    double friction = 0.3;
     double shelter_m =
         1.0;  // length of an obstacle's lee: what stands closer behind it gets no wind
     // Where it comes from, degrees from +y towards +x, which is clockwise from north seen from
@@ -48,8 +47,8 @@ double wind_force(const WindLoad& load, const WindOptions& options);  // newtons
 double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options);
 
 // By object, the least speed of a gust that tips it, m/s, over all directions, if it does not slide
-// before; NaN: nothing of it stands in the wind, or it is grounded. options: their speed and
-// friction are not asked for.
+// before; NaN: nothing of it stands in the wind, or it is grounded. options: their speed
+// is not asked for.
 std::vector<double> tipping_gusts(device::Device& device, const Surroundings& surroundings,
                                   std::span<const RiskObject> objects, const WindOptions& options);
 

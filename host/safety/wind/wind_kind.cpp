@@ -56,7 +56,6 @@ const DisturbanceKind& wind_kind() {
                 WindOptions wind;
                 wind.speed_m_s = options.wind_m_s;
                 wind.from_deg = options.wind_from_deg;
-                wind.friction = options.friction;
                 wind.over_space = options.space_fields;
                 return wind_field(device, surroundings, objects, wind);
             },

@@ -64,6 +64,7 @@ inline SimScene shapes_scene() {
     add(*cut(block({0.5, 0, 0}, {0.8, 0.3, 0.2}), {{0.6, 0, 0.8}, 0.55}), 1);
     ConvexPart tilted = *hull_part(prism({0.5, -0.5, 0.3}, {0.6, 0, 0.8}, 0.1, 0.2, 4));
     add(std::move(tilted), 0);
+    out.bodies[2].friction = 0.7;  // of rubber
     return out;
 }
 

@@ -31,8 +31,9 @@ TEST_F(Corrections, OfEachKind) {
         {"do": "not_there", "at_m": [[1, 2, 3]]},
         {"do": "hollow", "at_m": [[1, 2, 3]], "wall_m": 0.02},
         {"do": "mass", "at_m": [[1, 2, 3]], "kg": 12},
-        {"name": "K\u00fchlschrank", "at_m": [[1, 2, 3]], "do": "name"})")));
-    ASSERT_EQ(all.size(), 7u);
+        {"name": "K\u00fchlschrank", "at_m": [[1, 2, 3]], "do": "name"},
+        {"do": "friction", "at_m": [[1, 2, 3]], "coefficient": 0.6})")));
+    ASSERT_EQ(all.size(), 8u);
     for (std::size_t n = 0; n < all.size(); ++n) {
         EXPECT_EQ(all[n].kind, static_cast<Kind>(n));
         EXPECT_EQ(all[n].at_m.front(), (Vec3{1, 2, 3}));
@@ -43,6 +44,7 @@ TEST_F(Corrections, OfEachKind) {
     EXPECT_EQ(all[5].mass_kg, 12);
     EXPECT_EQ(all[2].was, "object 16");
     EXPECT_EQ(all[6].name, "K\u00fchlschrank");
+    EXPECT_EQ(all[7].coefficient, 0.6);
     EXPECT_FALSE(fault_of(all));
     EXPECT_TRUE(corrections_of(file_of("")).empty());
 }
@@ -98,6 +100,9 @@ TEST_F(Corrections, EntriesThatSayNothing) {
         {entry("hollow", one, R"(, "wall_m": 0)"), {"wall_m", "above 0"}},
         {entry("mass", one, R"(, "kg": -1)"), {"kg", "-1"}},
         {entry("mass", one, R"(, "kg": 1e12)"), {"kg", "1e+06"}},
+        {entry("friction", one), {"no \"coefficient\""}},
+        {entry("friction", one, R"(, "coefficient": 0)"),
+         {"coefficient", "above 0 and at most 10"}},
         {entry("name", one, R"(, "name": " ")"), {"name", "empty"}},
         {entry("name", one, R"(, "name": "a\nb")"), {"name", "control"}},
         {entry("name", one, R"(, "name": ")" + std::string(201, 'x') + "\""), {"name", "201"}},

@@ -20,12 +20,14 @@ class MaterialFiles : public test::Files {};
 TEST_F(MaterialFiles, HaveKinds) {
     const Materials kinds = read_materials(write("m.json", kinds_in(R"(
         {"name": "kg\u00fchl", "size_m": [0.3, 0.1, 0.2], "fill": 0.5, "density_kg_m3": 200, "spread": 0.4, "x": 1},
-        {"name": "cup", "size_m": [1, 1, 1], "fill": 1, "density_kg_m3": 700, "spread": 0})")));
+        {"name": "cup", "size_m": [1, 1, 1], "fill": 1, "density_kg_m3": 700, "spread": 0, "friction": 0.6})")));
     ASSERT_EQ(kinds.size(), 2u);
     EXPECT_EQ(kinds[0].name, "kg\u00fchl");
     EXPECT_EQ(kinds[0].size_m, (Vec3{0.1, 0.2, 0.3})) << "the shortest edge first";
     EXPECT_EQ(kinds[0].density_kg_m3, 200);
     EXPECT_EQ(kinds[1].spread, 0);
+    EXPECT_EQ(kinds[0].friction, 0) << "that of all";
+    EXPECT_EQ(kinds[1].friction, 0.6);
     EXPECT_EQ(read_materials("household").size(), household_materials().size());
 }
 
@@ -43,6 +45,8 @@ TEST_F(MaterialFiles, ThatAreNone) {
         {kinds_in(R"({"name": "cup", "spread": "a", )" + kind + "}"), {"\"spread\" is string"}},
         {kinds_in(R"({"name": "cup", "spread": 3.5, )" + kind + "}"),
          {"kind 1: spread is 3.5", "from 0 to 3"}},
+        {kinds_in(R"({"name": "cup", "spread": 1, "friction": -1, )" + kind + "}"),
+         {"kind 1: friction is -1", "from 0 to 10"}},
     };
     expect_refused("m.json", bad, [](const auto& file) { read_materials(file); });
     test::expect_input_error([] { read_materials("/no/such/file"); }, {"/no/such/file"});

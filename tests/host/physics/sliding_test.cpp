@@ -42,7 +42,8 @@ TEST_F(Sliding, FromAnotherPlaceItIsAsIfItStoodThere) {
     const std::vector<std::int32_t> own{0, 1, 2};
     const auto bodies = mass_properties(*device, cells, 3, density);
     const std::size_t cube = 2;
-    const auto places = places_of(cells, own, bodies, std::span(&cube, 1), 0.3, 1.3).at(0);
+    const auto places =
+        places_of(cells, own, bodies, std::span(&cube, 1), std::vector(3, 0.3), 1.3).at(0);
     ASSERT_GT(places.side, 20);
     EXPECT_NEAR(places.step_m * (places.side / 2), 1.3, 0.051);
     const std::int32_t half = places.side / 2;

@@ -53,12 +53,12 @@ struct AssessedRoom {
             object.candidate =
                 graph::candidate_of(contacts, bodies, around.is_floor_primitive, members);
             object.inertia = inertia[o];
+            object.friction = friction;
             objects.push_back(std::move(object));
         }
         stage.objects = objects;
         stage.object_of_primitive = room.object_of_primitive;
-        find_barriers(device, hulls, solids, {}, Stops(stage), room.object_of_primitive, friction,
-                      objects);
+        find_barriers(device, hulls, solids, {}, Stops(stage), room.object_of_primitive, objects);
         at_risk = risk_objects(objects);
         parts.solids = {&solids, [](const SolidScene*) {}};
         stage.objects = objects;

@@ -136,6 +136,32 @@ TEST_F(SlowCorrectedRoom, IsSoWhateverTheSeedAndTheVoxels) {
     expect_known(8, 0.016);
 }
 
+// Its own coefficient counts wherever it slides; by hand, or else by its name.
+TEST_F(CorrectedRoom, RubsAsSomebodyKnows) {
+    const auto rubs = [](double by) {
+        return correction(Kind::friction, {on_box}, &Correction::coefficient, by);
+    };
+    const Scene plain = parsed({}).scene, icy = parsed({rubs(0.03)}).scene;
+    expect_held(icy, 1);
+    const Object &usual = object_at(plain, on_box), &box = object_at(icy, on_box);
+    EXPECT_TRUE(std::isnan(usual.friction)) << "the scene's";
+    EXPECT_EQ(box.friction, 0.03);
+    EXPECT_TRUE(std::isnan(object_at(icy, on_crate).friction));
+    EXPECT_NEAR(box.overturning.slide_N, 0.1 * usual.overturning.slide_N, 1e-9);
+    EXPECT_EQ(box.mass_kg, usual.mass_kg);
+    EXPECT_EQ(box.mode, "slide");
+    EXPECT_LT(box.barrier_J, usual.barrier_J);
+    Materials kinds = household_materials();
+    kinds.push_back({"ice box", {0.2, 0.2, 0.3}, 1, 900, 0.1, 0.05});
+    const auto materials = std::make_shared<const Materials>(kinds);
+    const Scene named = parsed({name(on_box, "ice box")}, 1, 0, materials).scene;
+    EXPECT_EQ(object_at(named, on_box).friction, 0.05);
+    const Scene both =
+        parsed({name(on_box, "ice box"), rubs(0.4), rubs(0.6)}, 1, 0, materials).scene;
+    EXPECT_EQ(object_at(both, on_box).friction, 0.4);
+    EXPECT_FALSE(both.corrections[2].held) << "the first counts";
+}
+
 // A name says more of what a thing weighs than its size, a mass by hand all.
 TEST_F(CorrectedRoom, WeighsByNamesAndSizes) {
     const auto kinds = std::make_shared<const Materials>(Materials{

@@ -226,11 +226,11 @@ class Advice : public ::testing::Test {
         const std::vector<safety::Disturbance> fields{
             safety::human_field(*device, scene->around, scene->at_risk, walking),
             safety::wind_field(*device, scene->around, scene->at_risk, {}),
-            safety::earthquake_field(*device, scene->around, scene->at_risk, advice_friction, {})};
+            safety::earthquake_field(*device, scene->around, scene->at_risk, {})};
         risk.clear();
         for (const auto& field : fields) risk.push_back(safety::risk(field, scene->at_risk));
         return advise(scene->solids, room.object_of_primitive, scene->objects, scene->at_risk,
-                      fields, risk, advice_friction, advice_tolerable_J);
+                      fields, risk, advice_tolerable_J);
     }
     double worst(std::int32_t id) const {
         double most = 0;

@@ -277,7 +277,7 @@ TEST(TableEdge, WhatSlidesAlongItStaysOn) {
     pulse.m_s2.assign(200, 0.0);
     std::fill_n(pulse.m_s2.begin(), 100, a);
     options.record = pulse;
-    const Disturbance field = earthquake_field(*device, scene.around, scene.at_risk, mu, options);
+    const Disturbance field = earthquake_field(*device, scene.around, scene.at_risk, options);
     ASSERT_EQ(field.work[id].size(), direction_count);
     for (unsigned d = 0; d < direction_count; ++d) {
         SCOPED_TRACE(d);

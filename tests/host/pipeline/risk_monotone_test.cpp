@@ -39,7 +39,7 @@ class SlowRisk : public ::testing::Test {
             options.seed = seed;
             options.pga_m_s2 = pga_m_s2;
             options.record = record;
-            return safety::earthquake_field(*device, scene.around, scene.at_risk, mu, options);
+            return safety::earthquake_field(*device, scene.around, scene.at_risk, options);
         }();
         return safety::risk(disturbance, scene.at_risk)[id];
     }
@@ -299,7 +299,7 @@ TEST(RiskSpread, IsWhatSeedsDifferBy) {
     const double shakes = strays([&](std::uint64_t seed) {
         safety::EarthquakeOptions options;
         options.seed = seed;
-        return safety::earthquake_field(*device, scene.around, scene.at_risk, 0.3, options);
+        return safety::earthquake_field(*device, scene.around, scene.at_risk, options);
     });
     EXPECT_GT(shakes, 0.7);
     EXPECT_LT(shakes, 1.4);

@@ -16,7 +16,7 @@ namespace topple::safety {
 namespace {
 
 using physics::gravity;
-constexpr double mu = 0.3;
+constexpr double mu = 0.3;  // RiskObject's
 
 // Of acceleration `a` and length t along one axis, in steps of a hundredth of it.
 Accelerogram square_pulse(double a, double t) {
@@ -54,8 +54,7 @@ TEST(Earthquake, SlipsFarEnoughWhateverTheWay) {
     const std::vector<GroundEvent> of_both = from_all_ways(1, 1);
     events.insert(events.end(), of_both.begin(), of_both.end());
     const std::vector<std::size_t> which{0};
-    const Motions found =
-        shake_objects(*device, std::vector{slab}, which, records, events, mu, true);
+    const Motions found = shake_objects(*device, std::vector{slab}, which, records, events, true);
     ASSERT_EQ(found[0].size(), events.size());
     for (std::size_t e = 0; e < events.size(); ++e) {
         SCOPED_TRACE(e);
@@ -85,15 +84,14 @@ TEST(Earthquake, ChancesOfFallingAreThoseOfBothPlanes) {
     objects[3].held = false;
     const std::vector<std::size_t> which{0, 1, 2, 3};
     const std::vector records{made_up_records(2, 3)[1]};
-    const auto found = fragilities(*device, objects, which, records, mu, 1.5, nullptr);
+    const auto found = fragilities(*device, objects, which, records, 1.5, nullptr);
     const double peak = records[0].peak_m_s2();
     for (const std::size_t o : which) {
         SCOPED_TRACE(o);
         std::size_t falling = 0;
         for (const auto& [pga_g, chance] : found[o].counted) {
             const auto events = from_all_ways(0, 1.5 * pga_g * gravity / peak);
-            const Motions motions =
-                shake_objects(*device, objects, which, records, events, mu, false);
+            const Motions motions = shake_objects(*device, objects, which, records, events, false);
             const auto falls = std::ranges::count_if(motions[o], [&](const PlaneMotions& m) {
                 const auto fell = [&](std::size_t plane) {
                     return m.in[plane].overturned() || m.in[plane].slid_off(objects[o].body[plane]);
@@ -127,7 +125,7 @@ TEST_F(EarthquakeField, WorkReachesTheBarrierExactlyWhereItFalls) {
     EarthquakeOptions options;
     options.record = square_pulse(8, 0.25);
     const auto surroundings = room.surroundings();
-    const Disturbance field = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const Disturbance field = earthquake_field(*device, surroundings, room.objects, options);
     const auto work = [&](double barrier_J, double slide_m) {
         RiskObject elsewhere = object;
         elsewhere.barrier_J = barrier_J;
@@ -150,14 +148,14 @@ TEST_F(EarthquakeField, SameSeedSameEvents) {
     room.thing(0.5, 0.5, 0);
     const auto surroundings = room.surroundings();
     EarthquakeOptions options;
-    const auto a = earthquake_field(*device, surroundings, room.objects, mu, options);
-    const auto b = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const auto a = earthquake_field(*device, surroundings, room.objects, options);
+    const auto b = earthquake_field(*device, surroundings, room.objects, options);
     ASSERT_EQ(a.work[1].size(), 64u);
     EXPECT_TRUE(a.work[0].empty()) << "the floor is grounded";
     EXPECT_NEAR(test::total_probability(a.work[1]), 1, 1e-12);
     bool other = false;
     options.seed = 2;
-    const auto c = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const auto c = earthquake_field(*device, surroundings, room.objects, options);
     for (std::size_t n = 0; n < 64; ++n) {
         EXPECT_EQ(a.work[1][n].W_J, b.work[1][n].W_J);
         other = other || a.work[1][n].W_J != c.work[1][n].W_J;
@@ -191,7 +189,7 @@ TEST_F(EarthquakeField, UpperFloorsShakeMore) {
     EarthquakeOptions options;
     options.record = square_pulse(8, 0.25);
     options.over_space = true;
-    const Disturbance field = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const Disturbance field = earthquake_field(*device, surroundings, room.objects, options);
     EXPECT_NEAR(field.strongest[high].force_N, 2 * field.strongest[low].force_N, 1e-9);
     EXPECT_NEAR(field.fragility[high].pga_g, field.fragility[low].pga_g / 2,
                 0.05 * field.fragility[low].pga_g);
@@ -274,7 +272,7 @@ TEST_F(EarthquakeField, BringsNoMoreThanItTakesToOverturn) {
             physics::SlideResult{}, mu);
         EarthquakeOptions strong;
         strong.pga_m_s2 = 20;
-        return earthquake_field(*device, room.surroundings(), room.objects, mu, strong);
+        return earthquake_field(*device, room.surroundings(), room.objects, strong);
     };
     const Disturbance some = earthquake(0.1);
     EXPECT_GT(safety::risk_of(some.work[id], object, 1).chance, 0.5);
@@ -286,7 +284,7 @@ TEST_F(EarthquakeField, BringsNoMoreThanItTakesToOverturn) {
 
 TEST_F(EarthquakeField, NothingToShake) {
     test::Room room(0.02);
-    auto field = earthquake_field(*device, room.surroundings(), room.objects, mu, {});
+    auto field = earthquake_field(*device, room.surroundings(), room.objects, {});
     EXPECT_TRUE(field.work.empty());
     EXPECT_TRUE(field.notes.empty()) << "that nothing was judged is said once for all";
 }

@@ -110,7 +110,8 @@ TEST(Fragility, WhatSlidesIsToldHowItWouldFareWhereItCant) {
     const auto box = static_cast<std::size_t>(room.box(0.5, 0.6, 0.5, 0.6, 0, 0.26, false));
     const auto surroundings = room.surroundings();
     const auto on = [&](double friction) {
-        return earthquake_field(*device, surroundings, room.objects, friction, {}).fragility[box];
+        room.objects[box].friction = friction;
+        return earthquake_field(*device, surroundings, room.objects, {}).fragility[box];
     };
     const Fragility slippery = on(0.3), firm = on(2);  // b / h is 0.38
     EXPECT_EQ(slippery.counted.back().chance, 0);
@@ -150,8 +151,9 @@ TEST(Fragility, SlenderThingsFallEarlierAndAmplifiedFloorsSooner) {
     const auto surroundings = room.surroundings();
     EarthquakeOptions options;
     options.hazard = HazardCurve{{0.05, 0.2, 1.0}, {0.05, 0.005, 1e-4}, ""};
+    for (RiskObject& object : room.objects) object.friction = 0.5;
     const auto fragility = [&] {
-        return earthquake_field(*device, surroundings, room.objects, 0.5, options).fragility;
+        return earthquake_field(*device, surroundings, room.objects, options).fragility;
     };
     const std::vector<Fragility> ground = fragility();
     EXPECT_GT(ground[slender].pga_g, 0.05);
@@ -280,12 +282,13 @@ TEST(EarthquakeRecord, SixteenDirectionsOfTheSameRecord) {
     // Slender along x alone.
     const auto id = static_cast<std::size_t>(room.box(0.9, 1.0, 0.6, 1.4, 0, 0.6, false));
     RiskObject& plate = room.objects[id];
+    plate.friction = slip;
     plate.support_polygon = {{0.9, 0.6}, {1.0, 0.6}, {1.0, 1.4}, {0.9, 1.4}};
     plate.barrier_J = tipping_energy(plate.mass_kg, 0.3, 0.05);
     EarthquakeOptions options;
     options.record = pulse(0.25 * gravity, 0.6);
     const auto surroundings = room.surroundings();
-    const Disturbance field = earthquake_field(*device, surroundings, room.objects, slip, options);
+    const Disturbance field = earthquake_field(*device, surroundings, room.objects, options);
     EXPECT_EQ(field.draws, 16u);
     ASSERT_EQ(field.work[id].size(), 16u);
     EXPECT_NEAR(test::total_probability(field.work[id]), 1, 1e-12);
@@ -293,7 +296,7 @@ TEST(EarthquakeRecord, SixteenDirectionsOfTheSameRecord) {
     EXPECT_GE(field.work[id][8].W_J, plate.barrier_J) << "across, the other way";
     EXPECT_LT(field.work[id][4].W_J, plate.barrier_J) << "along";
     options.seed = 7;
-    const Disturbance again = earthquake_field(*device, surroundings, room.objects, slip, options);
+    const Disturbance again = earthquake_field(*device, surroundings, room.objects, options);
     for (unsigned d = 0; d < direction_count; ++d) {
         EXPECT_EQ(again.work[id][d].W_J, field.work[id][d].W_J);
         EXPECT_NEAR(std::abs(field.work[id][d].direction[0]), 1, 1e-12) << "over its long edges";

@@ -54,8 +54,9 @@ TEST(HandLoads, UpsetWhatAForceThatGrowsUpsets) {
                             .half_base_m = half,
                             .arm_m = 0.4};
         const auto falls = [&](double slide_m) {
-            const RiskObject object = standing(mass, 1.5, slide_m);
-            return hand_work_J(object, load, mu) >= object.barrier_J;
+            RiskObject object = standing(mass, 1.5, slide_m);
+            object.friction = mu;
+            return hand_work_J(object, load) >= object.barrier_J;
         };
         (gives == Gives::tips ? tips : gives == Gives::slides ? slides : stays)++;
         EXPECT_EQ(falls(-1), gives == Gives::tips) << n << ": on the floor";
@@ -79,10 +80,10 @@ TEST(HandLoads, ClimbersAreThoseOfTheRule) {
     HandLoad load{.way = {1, 0, 0}, .height_m = 1, .climber_Nm = moment, .arm_m = 0.4};
     for (const double half : {0.5 * moment / 20 / g, 0.999 * moment / 20 / g}) {
         load.half_base_m = half;
-        EXPECT_GE(hand_work_J(object, load, 0.3), object.barrier_J);
+        EXPECT_GE(hand_work_J(object, load), object.barrier_J);
     }
     load.half_base_m = 1.001 * moment / 20 / g;
-    EXPECT_LT(hand_work_J(object, load, 0.3), object.barrier_J);
+    EXPECT_LT(hand_work_J(object, load), object.barrier_J);
 }
 
 // A rod on its foot, which falls over by steps of a tenth of a millisecond.
@@ -113,7 +114,7 @@ TEST(HandLoads, ABlowKeepsItsMomentum) {
     load.struck_kg = 30;
     load.struck_m_s = 2;
     const double together = 30.0 * 2 / (30 + 20);
-    EXPECT_NEAR(hand_work_J(object, load, 0.3), 20 * together * together / 2, 1e-9);
+    EXPECT_NEAR(hand_work_J(object, load), 20 * together * together / 2, 1e-9);
     EXPECT_NEAR(blow_impulse_Ns(object, load), 20 * together, 1e-9);
 }
 
@@ -124,7 +125,7 @@ class ReachField : public ::testing::Test {
         std::vector<const PersonKind*> kinds;
         for (const char* name : names) kinds.push_back(&person_kind(name));
         const auto device = device::open_native(threads);
-        return reach_field(*device, room.surroundings(), room.objects, kinds, 0.3);
+        return reach_field(*device, room.surroundings(), room.objects, kinds);
     }
     static double taken(const Disturbance& field, std::int32_t object) {
         return topple::test::total_probability(field.work[object]);
@@ -218,7 +219,7 @@ TEST_F(ReachField, PullsDownWhatIsTopHeavy) {
     const auto device = device::open_native(2);
     const topple::test::AssessedRoom scene(*device, room, 0.3);
     const PersonKind* const kinds[] = {&person_kind("children")};
-    const Disturbance field = reach_field(*device, scene.around, scene.at_risk, kinds, 0.3);
+    const Disturbance field = reach_field(*device, scene.around, scene.at_risk, kinds);
     const auto r = risk(field, scene.at_risk);
     EXPECT_GT(r[tall].mean_J, 0);
     EXPECT_EQ(r[chest].mean_J, 0);
@@ -249,7 +250,7 @@ TEST_F(ReachField, DrawersArePulledOutFromBeforeThem) {
     RiskObject& object = scene.at_risk[chest];
     const PersonKind* const kinds[] = {&person_kind("children"), &person_kind("elderly")};
     const auto opened = [&](std::string_view by) {
-        const Disturbance field = reach_field(*device, scene.around, scene.at_risk, kinds, 0.3);
+        const Disturbance field = reach_field(*device, scene.around, scene.at_risk, kinds);
         for (const Hold& hold : field.holds[chest])
             if (hold.act == "open" && hold.by == by) return hold;
         return Hold{};

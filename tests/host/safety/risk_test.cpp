@@ -183,6 +183,7 @@ TEST(RiskError, FieldsTellTheRisksOfBothEnds) {
     object.barrier_J = tipping_energy(object.mass_kg, 0.5, 0.1);
     object.curve = {{object.barrier_J, 5}};
     object.barrier_error_J = 0.6 * object.barrier_J;
+    object.friction = 0.6;
     const Surroundings around = room.surroundings();
     WindOptions gale;  // that just upsets it
     gale.speed_m_s = tipping_gusts(*device, around, room.objects, gale)[thing];
@@ -190,7 +191,7 @@ TEST(RiskError, FieldsTellTheRisksOfBothEnds) {
     shaking.pga_m_s2 = 6;
     const Disturbance fields[] = {human_field(*device, around, room.objects, {}),
                                   wind_field(*device, around, room.objects, gale),
-                                  earthquake_field(*device, around, room.objects, 0.6, shaking)};
+                                  earthquake_field(*device, around, room.objects, shaking)};
     for (const Disturbance& field : fields) {
         const double measured = risk(field, room.objects)[thing].mean_J;
         EXPECT_DOUBLE_EQ(risk_if(field, room.objects)[thing].mean_J, measured) << field.name;

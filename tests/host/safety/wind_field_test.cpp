@@ -53,12 +53,12 @@ TEST_F(WindField, ClosedFormsOfTheBox) {
         options.air_density_kg_m3 = air;
         box.base_width_m = 0.2;
         box.slide_distance_m = -1;
-        options.friction = 0.5;
+        box.friction = 0.5;
         const double tips = critical_speed(box, across, options);
         EXPECT_NEAR(tips, std::sqrt(2 * 700 * 9.80665 * 0.04 / (air * 1.3 * 0.5)), 1e-6);
         EXPECT_NEAR(tips, 26.26, 0.02 * 26.26);
         box.slide_distance_m = 0.3;
-        options.friction = 0.3;
+        box.friction = 0.3;
         const double slides = critical_speed(box, across, options);
         EXPECT_NEAR(slides, std::sqrt(2 * 0.3 * 21 * 9.80665 / (air * 1.3 * 0.15)), 1e-6);
         EXPECT_NEAR(slides, 22.74, 0.02 * 22.74);
