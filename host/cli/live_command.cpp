@@ -92,6 +92,11 @@ std::unique_ptr<live::Feed> feed_of(const std::string& named, const std::string&
     return std::make_unique<live::GrowingFolder>(named);
 }
 
+LiveScene with_numbers_of(const live::Feed& feed, LiveScene found) {
+    for (FrameId& frame : found.frames) frame = feed.number_of(frame);
+    return found;
+}
+
 int run(LiveArguments& a) {
     constexpr auto pause = std::chrono::milliseconds(100);
     constexpr std::size_t most_at_once = 500;
@@ -122,9 +127,7 @@ int run(LiveArguments& a) {
     std::string said;
     live::Feed::Reading reading;
     reading.most = most_at_once;
-    reading.told = [&](const std::string& line) {
-        print_to(stderr, "%s; it is left out\n", line.c_str());
-    };
+    reading.told = [&](const std::string& line) { print_to(stderr, "%s\n", line.c_str()); };
     try {
         while (interrupted() == 0) {
             if (!session) session = feed->begin(a.options);
@@ -132,7 +135,7 @@ int run(LiveArguments& a) {
                 if (!a.quiet) print_glance(*session);
                 const auto start = Clock::now();
                 const auto found = session->update();
-                write_outputs(*found, a.out, output);
+                write_outputs(with_numbers_of(*feed, *found), a.out, output);
                 written = found->frames.size();
                 if (!a.quiet) print_changes(*found, since_s(start));
                 last = Clock::now();

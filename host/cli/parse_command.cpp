@@ -258,8 +258,8 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option(
         "--corrections", a->corrections,
         "What is known of the room beside the scan: JSON that says what is one thing,\n"
-        "apart, fixed, not there, hollow, how heavy, and what it is called, by points in\n"
-        "the scan (docs/corrections.md)");
+        "apart, fixed, not there, hollow, how heavy, how slippery, and what it is called,\n"
+        "by points in the scan (docs/corrections.md)");
     app.add_option("--title", a->output.title,
                    "Title of the report, as the room's name (default: INPUT's name)");
     app.add_flag("--png", a->output.pictures,

@@ -22,11 +22,14 @@ class Feed {
     struct Reading {
         std::size_t most = SIZE_MAX;  // frames that are added at once
         bool is_last = false;         // nobody writes any more: what can't be read now is damaged
-        std::function<void(const std::string&)> told;  // of each frame that is left out, and why
+        // Lines about what is left out, and why.
+        std::function<void(const std::string&)> told;
     };
     // Adds the frames that have come, and corrects poses that are others now; whether there were
     // any. A frame that the session refuses is left out.
     virtual bool read(Session& session, const Reading& how) = 0;
+    // What the feed calls a frame of the session: there may be others before it that were left out.
+    virtual std::uint64_t number_of(FrameId frame) const = 0;
     // Why it goes on no further now; empty: nothing is wrong.
     const std::string& waits_for() const { return waits_for_; }
     // Whether nothing more can come.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "live/growing_folder.h"
 
+#include <algorithm>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -36,6 +37,11 @@ std::optional<Intrinsics> GrowingFolder::intrinsics() {
 std::unique_ptr<Session> GrowingFolder::begin(const SessionOptions& options) {
     const auto found = intrinsics();
     return found ? std::make_unique<Session>(*found, std::nullopt, options) : nullptr;
+}
+
+std::uint64_t GrowingFolder::number_of(FrameId frame) const {
+    return static_cast<std::uint64_t>(std::ranges::find(known_, frame, &Known::frame) -
+                                      known_.begin());
 }
 
 std::string GrowingFolder::missing_from(const std::string& out) const {
@@ -77,7 +83,7 @@ void GrowingFolder::leave_out_damaged(const Reading& how) {
     known_.emplace_back();
     unread_.clear();
     if (damaged_++ == 0) first_damaged_ = waits_for_;
-    if (how.told) how.told(waits_for_);
+    if (how.told) how.told(waits_for_ + "; it is left out");
     waits_for_.clear();
 }
 
@@ -113,7 +119,9 @@ bool GrowingFolder::read(Session& session, const Reading& how) {
             ++added;
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
-            if (how.told) how.told(io::path_text(frames->files(n).front()) + ": " + error.what());
+            if (how.told)
+                how.told(io::path_text(frames->files(n).front()) + ": " + error.what() +
+                         "; it is left out");
         }
     }
     return !corrected.empty() || added > 0;

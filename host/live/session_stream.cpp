@@ -80,7 +80,7 @@ class SessionStream::Reader {
         Message out;
         const std::string name = "message " + std::to_string(messages_++);
         out.called = called_.string() + ": " + name;
-        const Json json = io::parse_json(out.called, line);
+        const Json json = parsed(out.called, line);
         const io::JsonEntry entry(called_, name, json);
         if (entry.has("intrinsics")) {
             expect_only(entry, json, {"intrinsics"});
@@ -98,10 +98,25 @@ class SessionStream::Reader {
             entry.wrong("has none of \"intrinsics\", \"add\", \"correct\" and \"forget\"");
         }
         if (stopped_) return std::nullopt;
+        payload_ = out.bytes;
         return out;
     }
 
   private:
+    Json parsed(const std::string& called, const std::string& line) const {
+        try {
+            return io::parse_json(called, line);
+        } catch (const Error& error) {
+            std::string hint;
+            if (line.find("NaN") != line.npos)
+                hint = "; NaN is no number of JSON: send no frame whose place is not known";
+            else if (payload_ > 0)
+                hint = "; were the readings of the message before longer than the " +
+                       std::to_string(payload_) + " bytes that its line means?";
+            throw Error(error.kind(), error.what() + hint);
+        }
+    }
+
     void add(const io::JsonEntry& entry, const Json& json, Message& out) {
         const std::string what = entry.text("add");
         const bool rgb = flag_of(entry, "rgb");
@@ -221,6 +236,7 @@ class SessionStream::Reader {
     std::optional<Intrinsics> camera_;
     std::string held_;
     std::size_t used_ = 0, number_ = 0, messages_ = 0;
+    std::size_t payload_ = 0;  // of the message before
     bool stopped_ = false;
 };
 
@@ -277,6 +293,11 @@ std::optional<SessionStream::Message> SessionStream::next() {
     return out;
 }
 
+std::uint64_t SessionStream::number_of(FrameId frame) const {
+    return static_cast<std::uint64_t>(std::ranges::find(frames_, std::optional(frame)) -
+                                      frames_.begin());
+}
+
 bool SessionStream::ended() const {
     const std::lock_guard lock(mutex_);
     return closed_ && waiting_.empty();
@@ -294,11 +315,12 @@ std::unique_ptr<Session> SessionStream::begin(const SessionOptions& options) {
 }
 
 FrameId SessionStream::frame_of(Number frame) const {
-    const auto refuse = [&](const std::string& why) { throw Error(ErrorKind::input, why); };
-    const std::string name = "frame " + std::to_string(frame);
+    const auto refuse = [&](const std::string& why) {
+        throw Error(ErrorKind::input, "frame " + std::to_string(frame) + " " + why);
+    };
     if (frame >= frames_.size())
-        refuse("there is no " + name + "; " + io::counted(frames_.size(), "frame") + " came");
-    if (!frames_[frame]) refuse(name + " was left out");
+        refuse("has not come; " + io::counted(frames_.size(), "frame") + " did");
+    if (!frames_[frame]) refuse("was left out, or forgotten");
     return *frames_[frame];
 }
 
@@ -319,6 +341,7 @@ bool SessionStream::apply(Session& session, const Message& message) {
                 session.correct(poses);
             } else if constexpr (std::is_same_v<What, Forget>) {
                 session.forget(frame_of(what.frame));
+                frames_[what.frame].reset();
             }
             return !std::is_same_v<What, Intrinsics>;
         },
@@ -335,7 +358,11 @@ bool SessionStream::read(Session& session, const Reading& how) {
             changed |= apply(session, *message);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::usage) throw;
-            if (how.told) how.told(message->called + ": " + error.what());
+            const bool adds = std::holds_alternative<DepthFrame>(message->what) ||
+                              std::holds_alternative<Sweep>(message->what);
+            if (how.told)
+                how.told(message->called + ": " + error.what() +
+                         (adds ? "; it is left out" : "; so the message does nothing"));
         }
     }
     return changed;

@@ -30,6 +30,7 @@ class SessionStream final : public Feed {
 
     std::unique_ptr<Session> begin(const SessionOptions& options) override;
     bool read(Session& session, const Reading& how) override;
+    std::uint64_t number_of(FrameId frame) const override;
     bool ended() const override;
 
   private:
@@ -60,7 +61,7 @@ class SessionStream final : public Feed {
 
     const std::string called_;
     const std::size_t most_bytes_;
-    std::vector<std::optional<FrameId>> frames_;  // by number; none: left out
+    std::vector<std::optional<FrameId>> frames_;  // by number; none: left out, or forgotten
 
     mutable std::mutex mutex_;
     std::condition_variable taken_;

@@ -162,9 +162,12 @@ TEST_F(SessionStreams, WhatIsRefusedIsNamedAndTheOthersStay) {
     read_all(stream);
     EXPECT_EQ(session_->frames().size(), 2u);
     EXPECT_EQ(told_,
-              "pipe: message 2: frame 1: it has no readings\n"
-              "pipe: message 4: frame 1 was left out\n"
-              "pipe: message 5: there is no frame 7; 3 frames came\n");
+              "pipe: message 2: frame 1: it has no readings; it is left out\n"
+              "pipe: message 4: frame 1 was left out, or forgotten; so the message does nothing\n"
+              "pipe: message 5: frame 7 has not come; 3 frames did; so the message does nothing\n");
+    std::vector<std::uint64_t> numbers;
+    for (const FrameId frame : session_->frames()) numbers.push_back(stream.number_of(frame));
+    EXPECT_EQ(numbers, (std::vector<std::uint64_t>{0, 2}));
     EXPECT_EQ(stream.missing_from("out"), "");
 }
 
@@ -208,6 +211,15 @@ TEST_F(SessionStreams, FaultsEndIt) {
               std::string::npos);
     EXPECT_EQ(fault(std::string((std::size_t{18} << 20), ' ')),
               "pipe: line 1 is longer than 16 MiB");
+    const std::string after = fault(intrinsics() + frame(0) + "12\nx\n");
+    EXPECT_NE(after.find("message 2: "), std::string::npos) << after;
+    const std::string longer = fault(intrinsics() + frame(0) + "\x01\n");
+    EXPECT_NE(longer.find("were the readings of the message before longer than the " +
+                          std::to_string(2 * walk_.frames[0].depth.size()) + " bytes"),
+              std::string::npos)
+        << longer;
+    EXPECT_NE(fault("{\"add\": \"frame\", \"pose\": [NaN]}\n").find("NaN is no number of JSON"),
+              std::string::npos);
     // A frame before the fault is there.
     EXPECT_NE(fault(intrinsics() + frame(0) + "x\n"), "");
     EXPECT_EQ(session_->frames().size(), 1u);
