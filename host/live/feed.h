@@ -32,8 +32,8 @@ class Feed {
     virtual std::uint64_t number_of(FrameId frame) const = 0;
     // Why it goes on no further now; empty: nothing is wrong.
     const std::string& waits_for() const { return waits_for_; }
-    // Whether nothing more can come.
-    virtual bool ended() const = 0;
+    // Whether nothing more can come; then waits_for() says what was wrong, if anything.
+    virtual bool ended() = 0;
     // What came and is not in the session, and why, at the end; empty: nothing. out: what the
     // session was written to; empty: it was not.
     virtual std::string missing_from(const std::string& out) const {

@@ -36,7 +36,7 @@ class GrowingFolder final : public Feed {
     std::unique_ptr<Session> begin(const SessionOptions& options) override;
     bool read(Session& session, const Reading& how) override;
     std::uint64_t number_of(FrameId frame) const override;
-    bool ended() const override { return false; }
+    bool ended() override { return false; }
     std::string missing_from(const std::string& out) const override;
 
   private:

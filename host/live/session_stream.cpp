@@ -98,7 +98,7 @@ class SessionStream::Reader {
             entry.wrong("has none of \"intrinsics\", \"add\", \"correct\" and \"forget\"");
         }
         if (stopped_) return std::nullopt;
-        payload_ = out.bytes;
+        payload_ = std::exchange(out.bytes, out.bytes + line.size());
         return out;
     }
 
@@ -287,8 +287,6 @@ std::optional<SessionStream::Message> SessionStream::next() {
         waiting_.pop_front();
         waiting_bytes_ -= out->bytes;
         taken_.notify_all();
-    } else if (closed_) {
-        waits_for_ = fault_;
     }
     return out;
 }
@@ -298,17 +296,16 @@ std::uint64_t SessionStream::number_of(FrameId frame) const {
                                       frames_.begin());
 }
 
-bool SessionStream::ended() const {
+bool SessionStream::ended() {
     const std::lock_guard lock(mutex_);
-    return closed_ && waiting_.empty();
+    if (!closed_ || !waiting_.empty()) return false;
+    waits_for_ = fault_;
+    return true;
 }
 
 std::unique_ptr<Session> SessionStream::begin(const SessionOptions& options) {
     const std::lock_guard lock(mutex_);
-    if (waiting_.empty()) {
-        if (closed_) waits_for_ = fault_;
-        return nullptr;
-    }
+    if (waiting_.empty()) return nullptr;
     const auto* camera = std::get_if<Intrinsics>(&waiting_.front().what);
     return std::make_unique<Session>(camera ? Session(*camera, std::nullopt, options)
                                             : Session::of_points(options));

@@ -31,7 +31,7 @@ class SessionStream final : public Feed {
     std::unique_ptr<Session> begin(const SessionOptions& options) override;
     bool read(Session& session, const Reading& how) override;
     std::uint64_t number_of(FrameId frame) const override;
-    bool ended() const override;
+    bool ended() override;
 
   private:
     // Frames are numbered from 0 on as they come.
@@ -48,8 +48,8 @@ class SessionStream final : public Feed {
     };
     struct Message {
         std::variant<Intrinsics, DepthFrame, Sweep, Correct, Forget> what;
-        std::string called;  // "standard input: message 3"
-        std::size_t bytes = 0;
+        std::string called;     // "standard input: message 3"
+        std::size_t bytes = 0;  // that it takes, about
     };
     class Reader;
 

@@ -42,7 +42,7 @@ class SessionStreams : public testing::Test {
         open();
     }
     ~SessionStreams() override {
-        close();
+        from_ = Descriptor();  // which ends whoever writes
         if (writing_.joinable()) writing_.join();
     }
     // On a thread of its own: a pipe holds little.
