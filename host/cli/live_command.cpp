@@ -23,6 +23,9 @@
 namespace topple::cli {
 namespace {
 
+// What the user names in place of a folder.
+constexpr const char* standard_input = "-";
+
 struct LiveArguments {
     std::string from, out, backend = "auto", up;
     SessionOptions options;
@@ -79,12 +82,10 @@ void print_glance(const Session& session) {
     std::fflush(stdout);
 }
 
-// What the user names: a folder, or - for standard input.
-constexpr const char* standard_input = "-";
-
-std::unique_ptr<live::Feed> feed_of(const std::string& named, const std::string& out) {
-    if (named == standard_input)
-        return std::make_unique<live::SessionStream>(STDIN_FILENO, "standard input");
+// called: what messages call it.
+std::unique_ptr<live::Feed> feed_of(const std::string& named, const std::string& called,
+                                    const std::string& out) {
+    if (named == standard_input) return std::make_unique<live::SessionStream>(STDIN_FILENO, called);
     std::error_code error;
     if (!std::filesystem::is_directory(named, error))
         throw Error(ErrorKind::input, named + ": No such folder");
@@ -103,9 +104,9 @@ int run(LiveArguments& a) {
     constexpr double patience_s = 5;  // until it is said what is waited for
     if (!a.up.empty()) a.options.parse.up = parse_up("--up", a.up);
     catch_interrupts();
-    const auto feed = feed_of(a.from, a.out);
     const bool is_folder = a.from != standard_input;
     const std::string called = is_folder ? a.from : "standard input";
+    const auto feed = feed_of(a.from, called, a.out);
     a.options.parse.device = device::open_device(a.backend, a.threads);
     a.options.parse.cancelled = [] { return interrupted() != 0; };
     a.options.source = called;

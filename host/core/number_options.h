@@ -16,6 +16,7 @@ namespace topple {
 // The finest voxel is below the noise of every sensor of rooms, and far above what overflows; the
 // coarsest hardly shows a room.
 inline constexpr double least_voxel_m = 0.001, largest_voxel_m = 1;
+inline constexpr double largest_friction = 10;
 
 struct NumberOption {
     const char* words;  // its name in C++, C and Python, and the command line's
@@ -47,7 +48,8 @@ inline constexpr NumberOption number_options[] = {
      30000},
     {"contents_kg_m3 (--contents)", &ParseOptions::contents_kg_m3, &topple_options::contents_kg_m3,
      0, 30000, true},
-    {"friction (--friction)", &ParseOptions::friction, &topple_options::friction, 0, 10},
+    {"friction (--friction)", &ParseOptions::friction, &topple_options::friction, 0,
+     largest_friction},
     {"wind_m_s (--wind)", &ParseOptions::wind_m_s, &topple_options::wind_m_s, 0, 150},
     {"wind_from_deg (--wind-from)", &ParseOptions::wind_from_deg, &topple_options::wind_from_deg,
      -360, 360},

@@ -120,7 +120,7 @@ class Statics {
         if (down.norm() < 1e-6) down = n.cross(Eigen::Vector3d::UnitY());
         down.normalize();
         const Eigen::Vector3d level = n.cross(down);
-        const double own = bodies_[touch.above].friction, friction = own > 0 ? own : friction_;
+        const double friction = bodies_[touch.above].friction_or(friction_);
         for (const Vec3& p : touch.point) {
             for (const Eigen::Vector3d& t :
                  {down, Eigen::Vector3d(-down), level, Eigen::Vector3d(-level)}) {

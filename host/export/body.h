@@ -26,7 +26,9 @@ struct Body {
     // How far inside its footing its centre of mass stands, by its barrier; 0: it falls by itself.
     double firm_m = 0;
     double friction = 0;  // coefficient; if not above 0, the scene's
-    int struts = 0;       // of its parts: feet that were not seen
+    bool has_own_friction() const { return friction > 0; }
+    double friction_or(double of_scene) const { return has_own_friction() ? friction : of_scene; }
+    int struts = 0;  // of its parts: feet that were not seen
     // Its footing was not seen, or was cut away as it lay in others: it stands on a pad made for
     // it, or is held where it is.
     bool on_pad = false, held = false;

@@ -61,7 +61,7 @@ std::vector<NamedBody> named_bodies(const SimScene& scene) {
         const std::string fault = fault_of(body);
         if (!fault.empty()) throw Error(ErrorKind::input, to.name + " can't be exported: " + fault);
         to.body = &body;
-        to.friction = body.friction > 0 ? body.friction : scene.friction;
+        to.friction = body.friction_or(scene.friction);
         for (const ConvexPart& part : body.parts)
             to.parts.push_back({to.name + "_part_" + std::to_string(to.parts.size()), &part,
                                 shape_in(body, part)});

@@ -69,8 +69,9 @@ void add_body(const NamedBody& named, std::string& assets, std::string& out) {
     if (!body.fixed) out += "      <freejoint/>\n";
     out += inertial(body);
     // Where bodies differ MuJoCo takes the larger coefficient, but that of the higher priority.
-    const std::string own =
-        body.friction > 0 ? joined(frictions(named.friction), attribute("priority", "1")) : "";
+    const std::string own = body.has_own_friction()
+                                ? joined(frictions(named.friction), attribute("priority", "1"))
+                                : "";
     for (const NamedPart& each : named.parts) {
         if (is_mesh(each.shape)) add_mesh(each, body.center_m, assets);
         append(out, "      <geom", attribute("name", each.name), attribute("class", "collision"),

@@ -185,9 +185,9 @@ std::string usd_mass(const Body& body) {
                   "\n        quatf physics:principalAxes = ", quaternion_tuple(axes), "\n");
 }
 
-// A material of that name.
-std::string usd_material(std::string_view indent, std::string_view name, double friction) {
-    return joined(indent, "def Material \"", name, "\" (\n", indent,
+// Called "friction".
+std::string usd_material(std::string_view indent, double friction) {
+    return joined(indent, "def Material \"friction\" (\n", indent,
                   "    prepend apiSchemas = [\"PhysicsMaterialAPI\"]\n", indent, ")\n", indent,
                   "{\n", indent, "    float physics:staticFriction = ", number(friction), "\n",
                   indent, "    float physics:dynamicFriction = ", number(friction), "\n", indent,
@@ -198,12 +198,13 @@ std::string usd_body(const NamedBody& named, bool hide_parts) {
     const Body& body = *named.body;
     std::string out = joined("\n    def Xform \"", named.name, "\""), schemas;
     if (!body.fixed) schemas = "\"PhysicsRigidBodyAPI\", \"PhysicsMassAPI\"";
-    if (body.friction > 0) append(schemas, schemas.empty() ? "" : ", ", "\"MaterialBindingAPI\"");
+    if (body.has_own_friction())
+        append(schemas, schemas.empty() ? "" : ", ", "\"MaterialBindingAPI\"");
     if (!schemas.empty()) append(out, " (\n        prepend apiSchemas = [", schemas, "]\n    )");
     out += "\n    {\n";
-    if (body.friction > 0)
+    if (body.has_own_friction())
         append(out, "        rel material:binding:physics = </World/", named.name, "/friction>\n\n",
-               usd_material("        ", "friction", named.friction), "\n");
+               usd_material("        ", named.friction), "\n");
     append(out, "        double3 xformOp:translate = ", tuple(body.center_m),
            "\n        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
            body.fixed ? "" : usd_mass(body));
@@ -239,8 +240,7 @@ void write_usd(const std::filesystem::path& file, const SimScene& scene) {
            "    {\n"
            "        vector3f physics:gravityDirection = (0, 0, -1)\n"
            "        float physics:gravityMagnitude = ",
-           number(scene.gravity_m_s2), "\n    }\n\n",
-           usd_material("    ", "friction", scene.friction));
+           number(scene.gravity_m_s2), "\n    }\n\n", usd_material("    ", scene.friction));
     for (const NamedBody& named : bodies) out += usd_body(named, seen);
     out += "}\n";
     replace_file(file, out);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/json.h"
+#include "core/number_options.h"
 #include "core/room_measures.h"
 #include "io/json_entry.h"
 #include "io/text.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr const char* corrections_schema = "topple.corrections/1";
 constexpr std::uint64_t largest_corrections_bytes = 10'000'000;
 constexpr std::size_t most_corrections = 1000, most_spots = 100, longest_name = 200;
-constexpr double thickest_m = 10, heaviest_kg = 1e6, roughest = 10;
+constexpr double thickest_m = 10, heaviest_kg = 1e6;
 
 std::string which(std::size_t n) {
     return "correction " + std::to_string(n + 1);
@@ -86,8 +87,9 @@ std::optional<std::string> fault_of_one(const Correction& c, const FieldNames& n
         return names.wall_m + " is " + range(c.wall_m, " m", thickest_m);
     if (c.kind == Correction::Kind::mass && !(c.mass_kg > 0 && c.mass_kg <= heaviest_kg))
         return names.mass_kg + " is " + range(c.mass_kg, " kg", heaviest_kg);
-    if (c.kind == Correction::Kind::friction && !(c.coefficient > 0 && c.coefficient <= roughest))
-        return names.coefficient + " is " + range(c.coefficient, "", roughest);
+    if (c.kind == Correction::Kind::friction &&
+        !(c.coefficient > 0 && c.coefficient <= largest_friction))
+        return names.coefficient + " is " + range(c.coefficient, "", largest_friction);
     if (c.kind == Correction::Kind::name) {
         if (const auto wrong = fault_of_name(c.name)) return names.name + " " + *wrong;
     }

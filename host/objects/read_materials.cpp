@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "core/number_options.h"
 #include "io/json_entry.h"
 #include "io/text.h"
 #include "topple/materials.h"
@@ -37,7 +38,7 @@ std::optional<std::string> fault_of_kind(const ThingKind& kind) {
           {"fill", kind.fill, 1e-3, 1},
           {"density_kg_m3", kind.density_kg_m3, 1, 25000},
           {"spread", kind.spread, 0, 3},
-          {"friction", kind.friction, 0, 10}})
+          {"friction", kind.friction, 0, largest_friction}})
         if (!(value >= least && value <= most))
             return std::string(of) + " is " + io::short_number(value) + "; it must be from " +
                    io::short_number(least) + " to " + io::short_number(most);

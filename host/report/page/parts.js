@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
+// What is said of an object as a whole, whichever of its parts it is said at, and once only.
+const ofAllOfAnObject = ['hollow', 'mass', 'friction', 'name'];
+
 // Which parts are chosen to be put right, and what is said of them: the panel below the view. Parts are chosen by
 // Ctrl-click (one) and Shift-click (all of an object) in the view, or in the list; where none is, all of the chosen object's are meant.
 class PartsPanel {
@@ -84,7 +87,7 @@ class PartsPanel {
       if (!about || !some([...about.parts, ...about.others], parts)) continue;
       const same = about.kind === kind && alike(about.parts, parts);
       if (same && ['one_thing', 'fixed', 'not_there', 'apart'].includes(kind)) return 'That is noted already.';
-      if (about.kind === kind && ['mass', 'friction', 'hollow', 'name'].includes(kind) && some(about.parts, parts)) return first('otherwise of this already');
+      if (about.kind === kind && ofAllOfAnObject.includes(kind) && some(about.parts, parts)) return first('otherwise of this already');
       if (about.kind === 'not_there' && some(about.parts, parts)) return first('that this is not there');
       if (about.kind === 'apart' && (kind === 'one_thing' && some(about.parts, parts) && some(about.others, parts) ||
         kind === 'fixed' && some(about.parts, parts) && ofBuilding(about.others))) return first('that these are a thing by themselves');
@@ -227,7 +230,7 @@ class PartsPanel {
 
   // What is said of all of an object is said at a few of its parts.
   enoughOf(kind, parts) {
-    if (!['hollow', 'mass', 'friction', 'name'].includes(kind)) return parts;
+    if (!ofAllOfAnObject.includes(kind)) return parts;
     const owners = [...new Set(parts.map(part => this.owner.get(part)))], each = Math.max(1, Math.floor(mostSpots / owners.length));
     return owners.flatMap(owner => this.corrections.told(parts.filter(part => this.owner.get(part) === owner)).slice(0, each));
   }
