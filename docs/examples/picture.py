@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# picture.py DIR PICTURE.png [--parts] [--seconds S]: what MuJoCo shows of an export, after S seconds. It needs PyPI's mujoco and
-# Pillow, and where there is no screen MUJOCO_GL=osmesa (libosmesa6) or egl. --parts: what collides, each part in a colour
-# of its own, instead of the surfaces.
+# picture.py DIR PICTURE.png [--parts] [--open] [--seconds S]: what MuJoCo shows of an export, after S seconds. It needs PyPI's
+# mujoco and Pillow, and where there is no screen MUJOCO_GL=osmesa (libosmesa6) or egl. --parts: what collides, each part in a
+# colour of its own, instead of the surfaces. --open: doors and drawers half open. --look X Y Z DISTANCE: from so far at a place.
 import argparse
 import os
 import sys
@@ -19,6 +19,8 @@ def main():
     options.add_argument('dir')
     options.add_argument('picture')
     options.add_argument('--parts', action='store_true')
+    options.add_argument('--open', action='store_true')
+    options.add_argument('--look', type=float, nargs=4)
     options.add_argument('--seconds', type=float, default=0)
     options.add_argument('--azimuth', type=float, default=225)
     options.add_argument('--elevation', type=float, default=-55)
@@ -28,6 +30,8 @@ def main():
     if options.parts:
         model.geom_rgba[:, :3] = 0.3 + 0.6 * np.random.default_rng(2).random((model.ngeom, 3))
     data = mujoco.MjData(model)
+    fronts = model.jnt_limited.astype(bool) & options.open
+    data.qpos[model.jnt_qposadr[fronts]] = model.jnt_range[fronts, 1] / 2
     mujoco.mj_forward(model, data)
     for _ in range(round(options.seconds / model.opt.timestep)):
         mujoco.mj_step(model, data)
@@ -35,6 +39,8 @@ def main():
     camera.azimuth, camera.elevation = options.azimuth, options.elevation
     camera.lookat = (data.geom_xpos.min(axis=0) + data.geom_xpos.max(axis=0)) / 2
     camera.distance = 1.2 * np.linalg.norm(np.ptp(data.geom_xpos, axis=0))
+    if options.look:
+        camera.lookat, camera.distance = options.look[:3], options.look[3]
     shown = mujoco.MjvOption()
     shown.geomgroup[:] = 0
     shown.geomgroup[PARTS if options.parts else SURFACES] = 1

@@ -22,6 +22,9 @@ void add_export_options(CLI::App& app, ExportOptions& options) {
     app.add_flag(
         "--no-visuals", [&options](std::int64_t) { options.visuals = false; },
         "Only what collides, not what is seen");
+    app.add_flag(
+        "--no-joints", [&options](std::int64_t) { options.joints = false; },
+        "Doors and drawers stay parts of their furniture");
 }
 
 bool wants_export(const ExportOptions& options) {

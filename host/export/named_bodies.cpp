@@ -65,6 +65,11 @@ std::vector<NamedBody> named_bodies(const SimScene& scene) {
         for (const ConvexPart& part : body.parts)
             to.parts.push_back({to.name + "_part_" + std::to_string(to.parts.size()), &part,
                                 shape_in(body, part)});
+        for (const JointedFront& front : scene.fronts) {
+            if (front.body != n) continue;
+            NamedFront& named = to.fronts.emplace_back(&front, front.boxes);
+            for (Box& box : named.boxes) box.center = minus(box.center, front.center_m);
+        }
     }
     return out;
 }

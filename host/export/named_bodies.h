@@ -19,11 +19,19 @@ struct NamedPart {
     Shape shape;  // in the body's frame: from its centre of mass
 };
 
+// Of a front: object_ID_front_M, with its boxes in its own frame, from its centre of mass.
+struct NamedFront {
+    const JointedFront* front = nullptr;
+    std::vector<Box> boxes;
+    std::string joint() const { return front->name + "_joint"; }
+};
+
 struct NamedBody {
     std::string name;  // object_ID, or pad_N
     const Body* body = nullptr;
     double friction = 0;  // coefficient
     std::vector<NamedPart> parts;
+    std::vector<NamedFront> fronts;
 };
 
 // Whether a simulator may take its mass; and its inertia, too.

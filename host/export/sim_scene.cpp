@@ -124,7 +124,8 @@ void add_supports(const Scene& scene, std::vector<Body>& bodies) {
     }
 }
 
-SimScene without_visuals(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
+SimScene without_visuals(const Scene& scene, const SolidScene& solids, bool joints,
+                         ThreadPool& threads) {
     SimScene out;
     out.friction = scene.friction;
     Bodies made = bodies_of(scene, solids, threads);
@@ -144,6 +145,7 @@ SimScene without_visuals(const Scene& scene, const SolidScene& solids, ThreadPoo
                 part = simplified(std::move(part), fine_voxels * solids.voxel_m());
     brace(out.bodies, solids.voxel_m() / 2);
     keep_balance(out.bodies, {out.friction, out.gravity_m_s2, solids.voxel_m() / 2});
+    if (joints) out.fronts = jointed_fronts(out.bodies, fronts_of(scene), scene.density_kg_m3);
     if (made.floor) {
         out.floor_m = made.floor->high[2];
         out.free_place = free_place(*made.floor, out.bodies);
@@ -153,16 +155,17 @@ SimScene without_visuals(const Scene& scene, const SolidScene& solids, ThreadPoo
 
 }  // namespace
 
-SimScene sim_scene(const Scene& scene, const SolidScene& solids, bool visuals, unsigned threads) {
+SimScene sim_scene(const Scene& scene, const SolidScene& solids, bool visuals, bool joints,
+                   unsigned threads) {
     ThreadPool pool(threads);
-    if (!visuals) return without_visuals(scene, solids, pool);
+    if (!visuals) return without_visuals(scene, solids, joints, pool);
     // Surfaces need nothing of the bodies.
     auto surfaces = std::async(threads == 1 ? std::launch::deferred : std::launch::async, [&] {
         return object_surfaces(scene, solids.with_strays(), solids.boundary(),
                                vdb::grid_frame(scene.manhattan_from_input, solids.voxel_m()),
                                threads, SurfaceDetail::simulated);
     });
-    SimScene out = without_visuals(scene, solids, pool);
+    SimScene out = without_visuals(scene, solids, joints, pool);
     add_visuals(out, scene, surfaces.get());
     return out;
 }

@@ -7,6 +7,7 @@
 #include "core/solid_scene.h"
 #include "export/body.h"
 #include "export/floor.h"
+#include "export/joints.h"
 #include "topple/scene.h"
 
 namespace topple::exports {
@@ -15,6 +16,7 @@ namespace topple::exports {
 // Scene::manhattan_from_input, z up, metres.
 struct SimScene {
     std::vector<Body> bodies;  // those of the scene's objects first, in their order; then pads
+    std::vector<JointedFront> fronts;  // ascending by body
     // Height of the lowest level floor, and where on it nothing stands.
     std::optional<double> floor_m;
     std::optional<FreePlace> free_place;
@@ -23,8 +25,9 @@ struct SimScene {
 };
 
 // solids: of that scene. visuals: what bodies look like, too; in colours as far as the points of
-// `scene` tell. threads: 0 for as many as the machine has. Throws Error(input) where scene and
-// solids don't fit together.
-SimScene sim_scene(const Scene& scene, const SolidScene& solids, bool visuals, unsigned threads);
+// `scene` tell. joints: of doors and drawers, as far as its points tell. threads: 0 for as many as
+// the machine has. Throws Error(input) where scene and solids don't fit together.
+SimScene sim_scene(const Scene& scene, const SolidScene& solids, bool visuals, bool joints,
+                   unsigned threads);
 
 }  // namespace topple::exports

@@ -76,6 +76,19 @@ OrderedJson vector_or_null(const Vec3& v) {
     return rules::finite(v) ? OrderedJson(v) : OrderedJson(nullptr);
 }
 
+OrderedJson front_json(const ExportedFront& front) {
+    return {{"name", front.name},
+            {"object", front.object},
+            {"opens", front.opens},
+            {"probability", io::number(front.probability)},
+            {"middle_m", vector_or_null(front.middle_m)},
+            {"wide_m", io::number(front.wide_m)},
+            {"high_m", io::number(front.high_m)},
+            {"axis", vector_or_null(front.axis)},
+            {"at_m", vector_or_null(front.at_m)},
+            {"most", io::number(front.most)}};
+}
+
 OrderedJson body_json(const ExportedBody& body) {
     return {
         {"name", body.name},
@@ -107,13 +120,16 @@ std::vector<std::string> notes_of(const ExportSummary& summary) {
 std::string bodies_json(const ExportSummary& summary) {
     OrderedJson bodies = OrderedJson::array();
     for (const ExportedBody& body : summary.bodies) bodies.push_back(body_json(body));
+    OrderedJson fronts = OrderedJson::array();
+    for (const ExportedFront& front : summary.fronts) fronts.push_back(front_json(front));
     const OrderedJson json{{"schema", bodies_schema},
                            {"deepest_overlap_m", io::number(summary.deepest_overlap_m)},
                            {"floor_m", io::number(summary.floor_m)},
                            {"free_place_m", vector_or_null(summary.free_place_m)},
                            {"free_radius_m", io::number(summary.free_radius_m)},
                            {"notes", summary.notes},
-                           {"bodies", std::move(bodies)}};
+                           {"bodies", std::move(bodies)},
+                           {"fronts", std::move(fronts)}};
     return json.dump(1) + "\n";
 }
 

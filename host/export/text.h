@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -29,6 +31,11 @@ std::string joined(const Parts&... parts) {
     std::string out;
     append(out, parts...);
     return out;
+}
+
+// "0.5 0.25 1 1": of sRGB, opaque.
+inline std::string rgba(const std::array<std::uint8_t, 3>& colour) {
+    return numbers({colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0, 1});
 }
 
 // XML: ` name="value"`, and `<name>value</name>`.

@@ -44,16 +44,18 @@ struct GeomOf {
     }
 };
 
+std::string inertial(double mass_kg, const Mat3& i) {
+    return joined("<inertial pos=\"0 0 0\"", attribute("mass", number(mass_kg)),
+                  attribute("fullinertia", numbers({i[0], i[4], i[8], i[1], i[2], i[5]})), "/>\n");
+}
+
 // Of what is fixed, too: MuJoCo would make up a mass of its parts.
 std::string inertial(const Body& body) {
-    std::string out = "      <inertial pos=\"0 0 0\"";
-    append(out, attribute("mass", number(has_mass(body) ? body.mass_kg : 0)));
-    const Mat3& i = body.inertia_kg_m2;
-    if (has_inertia(body))
-        append(out, attribute("fullinertia", numbers({i[0], i[4], i[8], i[1], i[2], i[5]})));
-    else
-        append(out, attribute("diaginertia", "0 0 0"));
-    return joined(out, "/>\n");
+    if (!has_inertia(body))
+        return joined("<inertial pos=\"0 0 0\"",
+                      attribute("mass", number(has_mass(body) ? body.mass_kg : 0)),
+                      attribute("diaginertia", "0 0 0"), "/>\n");
+    return inertial(body.mass_kg, body.inertia_kg_m2);
 }
 
 // The coefficients of sliding, turning and rolling.
@@ -61,13 +63,36 @@ std::string frictions(double sliding) {
     return attribute("friction", numbers({sliding, 0.005, 0.0001}));
 }
 
+// A front within its body. What shows no surfaces shows what collides.
+void add_front(const NamedFront& named, const Body& of, bool visuals, std::string& out) {
+    const JointedFront& front = *named.front;
+    append(out, "      <body", attribute("name", front.name),
+           attribute("pos", text(minus(front.center_m, of.center_m))), ">\n        <joint",
+           attribute("name", named.joint()), attribute("type", front.slides() ? "slide" : "hinge"),
+           attribute("pos", text(minus(front.at_m, front.center_m))),
+           attribute("axis", text(front.axis)), attribute("limited", "true"),
+           attribute("range", numbers({0, front.most})),
+           attribute("damping", number(front.damping())),
+           attribute("frictionloss", number(front.holding())), "/>\n        ",
+           inertial(front.mass_kg, front.inertia_kg_m2));
+    const std::string none;
+    for (const Box& box : named.boxes) {
+        const std::string shape = GeomOf{none}(box);
+        append(out, "        <geom", attribute("class", "collision"), shape, "/>\n");
+        if (visuals)
+            append(out, "        <geom", attribute("class", "front"), shape,
+                   attribute("rgba", rgba(front.colour)), "/>\n");
+    }
+    out += "      </body>\n";
+}
+
 // Of one body; meshes that it takes go to `assets`.
-void add_body(const NamedBody& named, std::string& assets, std::string& out) {
+void add_body(const NamedBody& named, bool visuals, std::string& assets, std::string& out) {
     const Body& body = *named.body;
     append(out, "    <body", attribute("name", named.name), attribute("pos", text(body.center_m)),
            ">\n");
     if (!body.fixed) out += "      <freejoint/>\n";
-    out += inertial(body);
+    append(out, "      ", inertial(body));
     // Where bodies differ MuJoCo takes the larger coefficient, but that of the higher priority.
     const std::string own = body.has_own_friction()
                                 ? joined(frictions(named.friction), attribute("priority", "1"))
@@ -84,7 +109,25 @@ void add_body(const NamedBody& named, std::string& assets, std::string& out) {
         append(out, "      <geom", attribute("name", mesh), attribute("class", "visual"),
                attribute("mesh", mesh), "/>\n");
     }
+    for (const NamedFront& front : named.fronts) add_front(front, body, visuals, out);
     out += "    </body>\n";
+}
+
+// Fronts lie in their bodies, and their edges turn past one another.
+std::string excluded_contacts(const std::vector<NamedBody>& bodies) {
+    std::string pairs;
+    for (const NamedBody& named : bodies) {
+        for (std::size_t n = 0; n < named.fronts.size(); ++n) {
+            const std::string& front = named.fronts[n].front->name;
+            const auto exclude = [&](const std::string& other) {
+                append(pairs, "    <exclude", attribute("body1", other), attribute("body2", front),
+                       "/>\n");
+            };
+            exclude(named.name);
+            for (std::size_t m = 0; m < n; ++m) exclude(named.fronts[m].front->name);
+        }
+    }
+    return pairs.empty() ? pairs : joined("  <contact>\n", pairs, "  </contact>\n");
 }
 
 // Viewers show groups 0 to 2.
@@ -99,6 +142,9 @@ std::string defaults(const SimScene& scene, bool visuals) {
             "    <default class=\"visual\">\n"
             "      <geom type=\"mesh\" material=\"colours\" group=\"2\" contype=\"0\" "
             "conaffinity=\"0\" mass=\"0\"/>\n"
+            "    </default>\n"
+            "    <default class=\"front\">\n"
+            "      <geom group=\"2\" contype=\"0\" conaffinity=\"0\" mass=\"0\"/>\n"
             "    </default>\n";
     out += "  </default>\n";
     return out;
@@ -128,7 +174,7 @@ void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
     ExportFolder files(folder, "mjcf", "scene.xml", "scene_asleep.xml");
     const bool visuals = files.add_visuals(bodies);
     std::string assets, world;
-    for (const NamedBody& body : bodies) add_body(body, assets, world);
+    for (const NamedBody& body : bodies) add_body(body, visuals, assets, world);
     std::string out(xml_mark);
     out +=
         "<!-- For MuJoCo 2.3 or later. Earlier ones have room for 100 contacts, and leave out the "
@@ -147,7 +193,8 @@ void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
     if (visuals)
         append(out, "    <texture name=\"colours\" type=\"2d\"", attribute("file", colour_file),
                "/>\n    <material name=\"colours\" texture=\"colours\" specular=\"0\"/>\n");
-    append(out, assets, "  </asset>\n  <worldbody>\n", world, "  </worldbody>\n</mujoco>\n");
+    append(out, assets, "  </asset>\n  <worldbody>\n", world, "  </worldbody>\n",
+           excluded_contacts(bodies), "</mujoco>\n");
     files.commit(out, asleep());
 }
 

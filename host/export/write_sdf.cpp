@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
@@ -41,13 +42,12 @@ struct SdfShape {
     }
 };
 
-std::string sdf_inertial(const Body& body) {
-    const Mat3& i = body.inertia_kg_m2;
+std::string sdf_inertial(double mass_kg, const Mat3& i) {
     return joined(
         "      ",
         element(
             "inertial",
-            joined(element("mass", number(body.mass_kg)),
+            joined(element("mass", number(mass_kg)),
                    element("inertia",
                            joined(element("ixx", number(i[0])), element("ixy", number(i[1])),
                                   element("ixz", number(i[2])), element("iyy", number(i[4])),
@@ -65,6 +65,37 @@ std::string sdf_surface(double friction) {
                                                         element("min_depth", "0.0005"))))));
 }
 
+// A front's link, at its centre of mass, and its joint.
+std::string sdf_front(const NamedFront& named, const Body& of, const std::string& surface) {
+    const JointedFront& front = *named.front;
+    std::string out =
+        joined("      <link", attribute("name", front.name), ">\n      ",
+               element("pose", joined(text(minus(front.center_m, of.center_m)), " 0 0 0")), "\n",
+               sdf_inertial(front.mass_kg, front.inertia_kg_m2));
+    const std::string none;
+    for (std::size_t n = 0; n < named.boxes.size(); ++n) {
+        const std::string name = attribute("name", joined("board_", std::to_string(n))),
+                          shape = SdfShape{none, none}(named.boxes[n]);
+        if (!of.visual.triangle.empty())
+            append(out, "      <visual", name, ">", shape,
+                   element("material", element("diffuse", rgba(front.colour))), "</visual>\n");
+        append(out, "      <collision", name, ">", shape, surface, "</collision>\n");
+    }
+    append(
+        out, "      </link>\n      <joint", attribute("name", named.joint()),
+        attribute("type", front.slides() ? "prismatic" : "revolute"), ">",
+        element("parent", "link"), element("child", front.name),
+        element("pose", joined(text(minus(front.at_m, front.center_m)), " 0 0 0")),
+        element("axis",
+                joined(element("xyz", text(front.axis)),
+                       element("limit",
+                               joined(element("lower", "0"), element("upper", number(front.most)))),
+                       element("dynamics", joined(element("damping", number(front.damping())),
+                                                  element("friction", number(front.holding())))))),
+        "</joint>\n");
+    return out;
+}
+
 std::string sdf_model(const NamedBody& named, const std::string& folder) {
     const Body& body = *named.body;
     const std::string surface = sdf_surface(named.friction);
@@ -72,14 +103,16 @@ std::string sdf_model(const NamedBody& named, const std::string& folder) {
                              element("static", body.fixed ? "true" : "false"),
                              element("pose", joined(text(body.center_m), " 0 0 0")),
                              "\n      <link name=\"link\">\n");
-    if (!body.fixed) out += sdf_inertial(body);
+    if (!body.fixed) out += sdf_inertial(body.mass_kg, body.inertia_kg_m2);
     if (!body.visual.triangle.empty())
         append(out, "      <visual name=\"visual\">", SdfShape{named.name, folder}.mesh(named.name),
                "</visual>\n");
     for (const NamedPart& each : named.parts)
         append(out, "      <collision", attribute("name", each.name), ">",
                std::visit(SdfShape{each.name, folder}, each.shape), surface, "</collision>\n");
-    out += "      </link>\n    </model>\n";
+    out += "      </link>\n";
+    for (const NamedFront& front : named.fronts) out += sdf_front(front, body, surface);
+    out += "    </model>\n";
     return out;
 }
 

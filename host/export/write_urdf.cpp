@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
@@ -47,12 +48,14 @@ struct UrdfShape {
     }
 };
 
-std::string urdf_inertial(double mass_kg, const Mat3& i) {
-    std::string out = "    <inertial><mass";
-    append(out, attribute("value", number(mass_kg)), "/><inertia", attribute("ixx", number(i[0])),
-           attribute("iyy", number(i[4])), attribute("izz", number(i[8])),
-           attribute("ixy", number(i[1])), attribute("ixz", number(i[2])),
-           attribute("iyz", number(i[5])), "/></inertial>\n");
+std::string urdf_inertial(double mass_kg, const Mat3& i, const Vec3& center_m = {}) {
+    std::string out = "    <inertial>";
+    if (center_m != Vec3{})
+        append(out, "<origin", attribute("xyz", text(center_m)), " rpy=\"0 0 0\"/>");
+    append(out, "<mass", attribute("value", number(mass_kg)), "/><inertia",
+           attribute("ixx", number(i[0])), attribute("iyy", number(i[4])),
+           attribute("izz", number(i[8])), attribute("ixy", number(i[1])),
+           attribute("ixz", number(i[2])), attribute("iyz", number(i[5])), "/></inertial>\n");
     return out;
 }
 
@@ -71,6 +74,34 @@ std::string urdf_link(const NamedBody& named, std::string_view files, std::strin
         append(out, "    <collision", attribute("name", each.name), ">",
                std::visit(UrdfShape{each.name, files, kind}, each.shape), "</collision>\n");
     out += "  </link>\n";
+    return out;
+}
+
+// A front's link, at its centre of mass, and its joint to its body's. The joint's frame is the
+// link's: hinges turn about its origin.
+std::string urdf_front(const NamedFront& named, const NamedBody& of) {
+    const JointedFront& front = *named.front;
+    const Vec3 center = minus(front.center_m, front.at_m);
+    std::string out = joined("  <link", attribute("name", front.name), ">\n");
+    append(out, urdf_inertial(front.mass_kg, front.inertia_kg_m2, center));
+    const std::string none;
+    for (Box box : named.boxes) {
+        box.center = plus(box.center, center);
+        const std::string shape = UrdfShape{none, "", ""}(box);
+        if (!of.body->visual.triangle.empty())
+            append(out, "    <visual>", shape, "<material",
+                   attribute("name", joined(front.name, "_colour")), "><color",
+                   attribute("rgba", rgba(front.colour)), "/></material></visual>\n");
+        append(out, "    <collision>", shape, "</collision>\n");
+    }
+    append(out, "  </link>\n  <joint", attribute("name", named.joint()),
+           attribute("type", front.slides() ? "prismatic" : "revolute"), "><parent",
+           attribute("link", of.name), "/><child", attribute("link", front.name), "/><origin",
+           attribute("xyz", text(minus(front.at_m, of.body->center_m))), " rpy=\"0 0 0\"/><axis",
+           attribute("xyz", text(front.axis)), "/><limit", attribute("lower", "0"),
+           attribute("upper", number(front.most)), " effort=\"100\" velocity=\"2\"/><dynamics",
+           attribute("damping", number(front.damping())),
+           attribute("friction", number(front.holding())), "/></joint>\n");
     return out;
 }
 
@@ -104,7 +135,11 @@ void write_urdf(const std::filesystem::path& folder, const SimScene& scene) {
                attribute("type", fixed ? "fixed" : "floating"), "><parent link=\"world\"/><child",
                attribute("link", named.name), "/><origin",
                attribute("xyz", text(named.body->center_m)), " rpy=\"0 0 0\"/></joint>\n");
-        files.add(joined(named.name, ".urdf"), robot(named.name, urdf_link(named, "", for_bullet)));
+        std::string fronts;
+        for (const NamedFront& front : named.fronts) fronts += urdf_front(front, named);
+        all += fronts;
+        files.add(joined(named.name, ".urdf"),
+                  robot(named.name, joined(urdf_link(named, "", for_bullet), fronts)));
     }
     files.commit(robot("scan", all));
 }

@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "core/vectors.h"
@@ -168,8 +169,8 @@ std::string usd_part(const NamedPart& each, const Vec3& center_m, bool hidden) {
 }
 
 // Inertia along its principal axes.
-std::string usd_mass(const Body& body) {
-    const Eigen::Matrix3d inertia(body.inertia_kg_m2.data());
+std::string usd_mass(double mass_kg, const Mat3& inertia_kg_m2) {
+    const Eigen::Matrix3d inertia(inertia_kg_m2.data());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(inertia);
     Axes axes{};
     for (std::size_t a = 0; a < 2; ++a) {
@@ -178,7 +179,7 @@ std::string usd_mass(const Body& body) {
     }
     axes[2] = cross(axes[0], axes[1]);
     const auto& moments = solved.eigenvalues();
-    return joined("        float physics:mass = ", number(body.mass_kg),
+    return joined("        float physics:mass = ", number(mass_kg),
                   "\n        point3f physics:centerOfMass = (0, 0, 0)\n"
                   "        float3 physics:diagonalInertia = ",
                   tuple({moments[0], moments[1], moments[2]}),
@@ -194,6 +195,38 @@ std::string usd_material(std::string_view indent, double friction) {
                   "    float physics:restitution = 0\n", indent, "}\n");
 }
 
+// A front, and its joint, whose x is the axis: of hinges to its angle, degrees.
+std::string usd_front(const NamedFront& named, const NamedBody& of) {
+    const JointedFront& front = *named.front;
+    std::string out = joined("\n    def Xform \"", front.name,
+                             "\" (\n        prepend apiSchemas = [\"PhysicsRigidBodyAPI\", "
+                             "\"PhysicsMassAPI\"]\n    )\n    {\n");
+    append(out, "        double3 xformOp:translate = ", tuple(front.center_m),
+           "\n        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
+           usd_mass(front.mass_kg, front.inertia_kg_m2));
+    const ConvexPart none;
+    for (std::size_t n = 0; n < named.boxes.size(); ++n)
+        append(out, "        def Cube \"board_", std::to_string(n),
+               "\" (\n            prepend apiSchemas = [\"PhysicsCollisionAPI\"]\n        )\n"
+               "        {\n",
+               UsdShape{none, front.center_m}(named.boxes[n]).content, usd_colours({front.colour}),
+               "        }\n");
+    const Axes frame = frame_around(front.axis);  // its third is the axis
+    const Axes turned{frame[2], frame[0], frame[1]};
+    const std::string turn = quaternion_tuple(turned);
+    append(out, "    }\n\n    def Physics", front.slides() ? "Prismatic" : "Revolute", "Joint \"",
+           named.joint(), "\"\n    {\n        rel physics:body0 = </World/", of.name,
+           ">\n        rel physics:body1 = </World/", front.name,
+           ">\n        uniform token physics:axis = \"X\"\n        point3f physics:localPos0 = ",
+           tuple(minus(front.at_m, of.body->center_m)),
+           "\n        point3f physics:localPos1 = ", tuple(minus(front.at_m, front.center_m)),
+           "\n        quatf physics:localRot0 = ", turn,
+           "\n        quatf physics:localRot1 = ", turn,
+           "\n        float physics:lowerLimit = 0\n        float physics:upperLimit = ",
+           number(front.slides() ? front.most : front.most * 180 / std::numbers::pi), "\n    }\n");
+    return out;
+}
+
 std::string usd_body(const NamedBody& named, bool hide_parts) {
     const Body& body = *named.body;
     std::string out = joined("\n    def Xform \"", named.name, "\""), schemas;
@@ -207,10 +240,11 @@ std::string usd_body(const NamedBody& named, bool hide_parts) {
                usd_material("        ", named.friction), "\n");
     append(out, "        double3 xformOp:translate = ", tuple(body.center_m),
            "\n        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
-           body.fixed ? "" : usd_mass(body));
+           body.fixed ? "" : usd_mass(body.mass_kg, body.inertia_kg_m2));
     if (!body.visual.triangle.empty()) out += usd_visual(body.visual);
     for (const NamedPart& each : named.parts) out += usd_part(each, body.center_m, hide_parts);
     out += "    }\n";
+    for (const NamedFront& front : named.fronts) out += usd_front(front, named);
     return out;
 }
 

@@ -45,6 +45,20 @@ ExportSummary summary_of(const exports::SimScene& scene) {
         to.lost_m3 = from.lost_m3;
         out.bodies.push_back(std::move(to));
     }
+    for (const exports::JointedFront& from : scene.fronts) {
+        ExportedFront to;
+        to.name = from.name;
+        to.object = scene.bodies[from.body].object;
+        to.opens = exports::to_string(from.opening);
+        to.probability = from.probability;
+        to.middle_m = from.middle_m;
+        to.wide_m = from.wide_m;
+        to.high_m = from.high_m;
+        to.axis = from.axis;
+        to.at_m = from.at_m;
+        to.most = from.most;
+        out.fronts.push_back(std::move(to));
+    }
     out.deepest_overlap_m = exports::deepest_overlap_m(scene.bodies);
     if (scene.floor_m) out.floor_m = *scene.floor_m;
     if (scene.free_place) {
@@ -75,7 +89,7 @@ ExportSummary write_formats(const Scene& scene, const SolidScene& solids,
                             const ExportOptions& options) {
     check_apart_from(scene.source, options);
     const exports::SimScene made =
-        exports::sim_scene(scene, solids, options.visuals, options.threads);
+        exports::sim_scene(scene, solids, options.visuals, options.joints, options.threads);
     stop_where_cancelled(options);
     const ExportSummary summary = summary_of(made);
     const std::string bodies = exports::bodies_json(summary);
@@ -131,8 +145,9 @@ ExportSummary export_output(const std::filesystem::path& output, const ExportOpt
         io::fail(solids.path(),
                  "is missing; parse the scan again (a cloud that was parsed in blocks has none and "
                  "can't be exported)");
-    // Only for colours.
-    if (options.visuals && points.is_there()) scene.points = io::read_points_ply(points);
+    // Only for colours, and for what tells doors and drawers.
+    if ((options.visuals || options.joints) && points.is_there())
+        scene.points = io::read_points_ply(points);
     return write_formats(scene, *io::read_solids(solids), options);
 }
 

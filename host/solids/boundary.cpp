@@ -307,6 +307,23 @@ std::vector<std::size_t> next_cells(const SolidCells& c, std::size_t axis, std::
     return out;
 }
 
+BoundaryCells without_void_solids(const SolidCells& cells, BoundaryCells all,
+                                  std::size_t primitives) {
+    std::vector<bool> left(primitives, true);
+    for (const std::int32_t p : all.primitive) left[p] = false;
+    for (std::size_t b = 0; b < all.size(); ++b)
+        if (all.share[b] > 0) left[all.primitive[b]] = true;
+    if (std::ranges::find(left, false) == left.end()) return all;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p >= 0 && !left[p])
+            left[p] = all.find(cells.i[n], cells.j[n], cells.k[n], p) == BoundaryCells::absent;
+    }
+    std::vector<bool> kept;
+    for (const std::int32_t p : all.primitive) kept.push_back(left[p]);
+    return all.only(kept);
+}
+
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
                             std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
                             std::span<const Ledge> ledges) {
@@ -354,7 +371,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     for (; cut != beyond.end(); ++cut) add_cell(*cut, nothing, out);
     out.patches = std::move(patches);
     measure_shares(device, cells.voxel_m, out);
-    return out;
+    return without_void_solids(cells, std::move(out), sheet.size());
 }
 
 }  // namespace topple::solids

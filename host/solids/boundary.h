@@ -49,4 +49,10 @@ std::uint8_t faced_by(const Vec3& gradient);
 // Half of the range of a patch's values over a voxel: its own, if it is flat.
 double reach_of(const Vec3& gradient, double voxel_m);
 
+// Without the cells of primitives that lie in `cells` but of which the surfaces leave nothing:
+// these were seen, but are so thin, and are solid as whole voxels. A thing without a volume can't
+// be weighed. primitives: their number.
+BoundaryCells without_void_solids(const SolidCells& cells, BoundaryCells all,
+                                  std::size_t primitives);
+
 }  // namespace topple::solids

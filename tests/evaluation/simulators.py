@@ -67,6 +67,8 @@ def in_bullet(folder, names):
         pybullet.setPhysicsEngineParameter(fixedTimeStep=1 / 480, numSolverIterations=100)
         ids = {}
         for joint in xml.parse(os.path.join(folder, 'scene.urdf')).iter('joint'):
+            if joint.find('parent').get('link') != 'world':
+                continue
             name = joint.find('child').get('link')
             at = [float(v) for v in joint.find('origin').get('xyz').split()]
             ids[name] = pybullet.loadURDF(os.path.join(folder, 'scene_urdf', name + '.urdf'), at,

@@ -209,7 +209,7 @@ void read_as_solids(const fs::path& file) {
     const auto solids = io::read_solids(file);
     if (!chosen<16>()) return;
     const Room& room = Room::get();
-    exports::sim_scene(room.scene, *solids, false, 1);
+    exports::sim_scene(room.scene, *solids, false, true, 1);
 }
 
 void read_as_groundwork(const fs::path& file) {

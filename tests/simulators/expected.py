@@ -27,6 +27,10 @@ class Expected:
     def path(self, *names):
         return os.path.join(self.folder, *names)
 
+    def fronts(self):
+        """Each with the name of its body."""
+        return {name: (of, front) for of, body in self.bodies.items() for name, front in body['fronts'].items()}
+
     def free(self):
         return {name: body for name, body in self.bodies.items() if not body['fixed']}
 

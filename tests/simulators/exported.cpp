@@ -55,13 +55,32 @@ void write_expected(const Exported& each) {
         for (const NamedPart& part : named.parts)
             parts[part.name] = {
                 {"low", part.part->low}, {"high", part.part->high}, {"mesh", is_mesh(part.shape)}};
+        nlohmann::json fronts = nlohmann::json::object();
+        for (const NamedFront& of : named.fronts) {
+            const JointedFront& front = *of.front;
+            Extents<double> box;
+            for (const Box& board : front.boxes)
+                for (const Vec3& corner : board.corners()) box.add(corner);
+            fronts[front.name] = {{"joint", of.joint()},
+                                  {"slides", front.slides()},
+                                  {"mass", front.mass_kg},
+                                  {"center", front.center_m},
+                                  {"inertia", front.inertia_kg_m2},
+                                  {"axis", front.axis},
+                                  {"at", front.at_m},
+                                  {"most", front.most},
+                                  {"boxes", front.boxes.size()},
+                                  {"low", box.low},
+                                  {"high", box.high}};
+        }
         bodies[named.name] = {{"fixed", body.fixed},
                               {"mass", body.mass_kg},
                               {"friction", named.friction},
                               {"center", body.center_m},
                               {"inertia", body.inertia_kg_m2},
                               {"colours", !body.visual.triangle.empty()},
-                              {"parts", parts}};
+                              {"parts", parts},
+                              {"fronts", fronts}};
     }
     const nlohmann::json all{{"gravity", each.scene.gravity_m_s2}, {"bodies", bodies}};
     std::ofstream(each.folder / "expected.json") << all.dump(1);
@@ -73,7 +92,7 @@ SimScene parsed_scene(const std::filesystem::path& folder) {
     options.device = device::open_device("native");
     options.disturbances.clear();
     const ParseResult result = parse(folder / "scan.xyz", options);
-    return sim_scene(result.scene, *result.solids, true, 0);
+    return sim_scene(result.scene, *result.solids, true, true, 0);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ def check(expected, file):
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     near('gravity', model.opt.gravity, [0, 0, -expected.gravity], 1e-9)
-    assert {model.body(b).name for b in range(1, model.nbody)} == set(expected.bodies), file
+    assert {model.body(b).name for b in range(1, model.nbody)} == set(expected.bodies) | set(expected.fronts()), file
     for name, body in expected.bodies.items():
         found = model.body(name)
         near(name, data.xpos[found.id], body['center'], 1e-6)
@@ -59,7 +59,43 @@ def check(expected, file):
             for geom in seen:
                 mesh = model.geom_dataid[geom]
                 assert model.geom_matid[geom] >= 0 and model.mesh_texcoordnum[mesh] > 0, name
+    for name, (of, front) in expected.fronts().items():
+        check_front(model, data, name, of, front)
     rests(expected, model, data, file)
+    opens(expected, model, data)
+
+
+def check_front(model, data, name, of, front):
+    found, joint = model.body(name), model.joint(front['joint'])
+    assert model.body(found.parentid[0]).name == of and found.jntadr[0] == joint.id, name
+    near(name, data.xipos[found.id], front['center'], 1e-6)
+    near(name, found.mass, front['mass'], 1e-6 * front['mass'])
+    near_inertia(name, found.inertia, data.ximat[found.id].reshape(3, 3), front)
+    assert joint.type[0] == (mujoco.mjtJoint.mjJNT_SLIDE if front['slides'] else mujoco.mjtJoint.mjJNT_HINGE), name
+    near(name, data.xaxis[joint.id], front['axis'], 1e-6)
+    near(name, joint.range, [0, front['most']], 1e-6)
+    if not front['slides']:
+        near(name, np.cross(data.xanchor[joint.id] - np.array(front['at']), front['axis']), [0, 0, 0], 1e-6)
+    boxes = [g for g in range(model.ngeom) if model.geom_bodyid[g] == found.id and model.geom_contype[g]]
+    assert len(boxes) == front['boxes'], name
+    points = np.concatenate([corners(model, data, g) for g in boxes])
+    near(name, [points.min(0), points.max(0)], [front['low'], front['high']], WITHIN_M)
+
+
+def opens(expected, model, data):
+    """What is pulled opens outwards as far as its joint lets it, and no further."""
+    for name, (_, front) in expected.fronts().items():
+        joint = model.joint(front['joint'])
+        angle = lambda: data.qpos[joint.qposadr[0]]
+        near(f'{name}, shut', angle(), 0, 0.002)
+        before = data.body(name).xipos.copy()
+        data.qfrc_applied[joint.dofadr[0]] = 25 if front['slides'] else 3
+        end = data.time + 4
+        while data.time < end:
+            mujoco.mj_step(model, data)
+        near(f'{name}, open', angle(), front['most'], 0.02)
+        data.qfrc_applied[joint.dofadr[0]] = 0
+        assert (data.body(name).xipos - before)[1] < -0.1, name  # its front looks to -y
 
 
 def rests(expected, model, data, file):

@@ -35,6 +35,8 @@ class Heard:
 def load(expected):
     out = {}
     for joint in xml.etree.ElementTree.parse(expected.path('scene.urdf')).iter('joint'):
+        if joint.find('parent').get('link') != 'world':
+            continue
         name = joint.find('child').get('link')
         place = [float(v) for v in joint.find('origin').get('xyz').split()]
         file = expected.path('scene_urdf', name + '.urdf')
@@ -48,7 +50,7 @@ def reach(number, axis, sign):
     half[axis], place[axis] = 0.5, sign * 10
     shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half)
     plate = pybullet.createMultiBody(0, shape, basePosition=place)
-    distance = min(point[8] for point in pybullet.getClosestPoints(number, plate, 20))
+    distance = min(point[8] for point in pybullet.getClosestPoints(number, plate, 20, linkIndexA=-1))
     pybullet.removeBody(plate)
     return sign * (9.5 - distance)
 
@@ -67,6 +69,16 @@ def check(expected, name, number):
     for axis in range(3):
         near(name, reach(number, axis, -1), min(p['low'][axis] for p in parts), 0.001 + MARGIN_M)
         near(name, reach(number, axis, 1), max(p['high'][axis] for p in parts), 0.001 + MARGIN_M)
+    assert pybullet.getNumJoints(number) == len(body['fronts']), name
+    for joint, (front, wanted) in enumerate(sorted(body['fronts'].items())):
+        info = pybullet.getJointInfo(number, joint)
+        assert (info[1].decode(), info[12].decode()) == (wanted['joint'], front), front
+        assert info[2] == (pybullet.JOINT_PRISMATIC if wanted['slides'] else pybullet.JOINT_REVOLUTE), front
+        near(front, info[8:10], [0, wanted['most']], 1e-6)
+        turned = pybullet.getLinkState(number, joint)[1]  # the axis is told in the frame of principal inertia
+        near(front, matrix(turned[3], *turned[:3]) @ info[13], wanted['axis'], 1e-5)
+        near(front, pybullet.getDynamicsInfo(number, joint)[0], wanted['mass'], 1e-5 * wanted['mass'])
+        near(front, pybullet.getLinkState(number, joint)[0], wanted['center'], 1e-5)
     seen = pybullet.getVisualShapeData(number)
     assert any(shape[4].decode().endswith(name + '.obj') for shape in seen) or not body['colours'], name
 

@@ -70,13 +70,29 @@ void expect_link(const urdf::Link& link, const NamedBody& named,
     }
 }
 
+void expect_front(const urdf::ModelInterface& model, const NamedFront& named, const NamedBody& of) {
+    const JointedFront& front = *named.front;
+    const auto link = model.getLink(front.name);
+    ASSERT_TRUE(link);
+    EXPECT_EQ(link->getParent()->name, of.name);
+    EXPECT_NEAR(link->inertial->mass, front.mass_kg, 1e-6);
+    EXPECT_EQ(link->collision_array.size(), front.boxes.size());
+    const urdf::Joint& joint = *link->parent_joint;
+    EXPECT_EQ(joint.type, front.slides() ? urdf::Joint::PRISMATIC : urdf::Joint::REVOLUTE);
+    EXPECT_NEAR(joint.limits->upper, front.most, 1e-8);
+    EXPECT_EQ(joint.limits->lower, 0);
+    EXPECT_NEAR(joint.axis.y * front.axis[1] + joint.axis.z * front.axis[2], 1, 1e-8);
+    EXPECT_NEAR(joint.parent_to_joint_origin_transform.position.x,
+                front.at_m[0] - of.body->center_m[0], 1e-8);
+}
+
 TEST(Exports, UrdfIsReadByUrdfdomWithoutAWord) {
     for (const Exported& each : exported()) {
         Heard heard;
         const auto all = urdf::parseURDFFile(each.folder / "scene.urdf");
         ASSERT_TRUE(all) << heard.all;
         EXPECT_EQ(all->getRoot()->name, "world");
-        EXPECT_EQ(all->links_.size(), each.bodies.size() + 1);
+        EXPECT_EQ(all->links_.size(), each.bodies.size() + each.scene.fronts.size() + 1);
         for (const NamedBody& named : each.bodies) {
             SCOPED_TRACE(named.name);
             const auto link = all->getLink(named.name);
@@ -89,7 +105,11 @@ TEST(Exports, UrdfIsReadByUrdfdomWithoutAWord) {
             const auto files = each.folder / "scene_urdf";
             const auto alone = urdf::parseURDFFile(files / (named.name + ".urdf"));
             ASSERT_TRUE(alone) << heard.all;
-            EXPECT_EQ(alone->links_.size(), 1u);
+            EXPECT_EQ(alone->links_.size(), 1 + named.fronts.size());
+            for (const NamedFront& front : named.fronts) {
+                expect_front(*all, front, named);
+                expect_front(*alone, front, named);
+            }
             expect_link(*alone->getRoot(), named, files, 0.001);
         }
         EXPECT_EQ(heard.all, "");
@@ -121,7 +141,21 @@ void expect_model(const sdf::Model& model, const NamedBody& named, const Exporte
     const Body& body = *named.body;
     EXPECT_EQ(model.Static(), body.fixed);
     EXPECT_NEAR(model.RawPose().Pos().Z(), body.center_m[2], 1e-8);
-    ASSERT_EQ(model.LinkCount(), 1u);
+    ASSERT_EQ(model.LinkCount(), 1 + named.fronts.size());
+    ASSERT_EQ(model.JointCount(), named.fronts.size());
+    for (std::size_t n = 0; n < named.fronts.size(); ++n) {
+        const JointedFront& front = *named.fronts[n].front;
+        const sdf::Joint& joint = *model.JointByIndex(n);
+        EXPECT_EQ(joint.ChildLinkName(), front.name);
+        EXPECT_EQ(joint.Type(),
+                  front.slides() ? sdf::JointType::PRISMATIC : sdf::JointType::REVOLUTE);
+        EXPECT_NEAR(joint.Axis(0)->Upper(), front.most, 1e-8);
+        EXPECT_NEAR(joint.Axis(0)->Xyz().Z(), front.axis[2], 1e-8);
+        EXPECT_NEAR(joint.RawPose().Pos().X(), front.at_m[0] - front.center_m[0], 1e-8);
+        const sdf::Link& link = *model.LinkByName(front.name);
+        EXPECT_NEAR(link.Inertial().MassMatrix().Mass(), front.mass_kg, 1e-6);
+        EXPECT_EQ(link.CollisionCount(), front.boxes.size());
+    }
     const sdf::Link& link = *model.LinkByIndex(0);
     if (!body.fixed) {
         const auto mass = link.Inertial().MassMatrix();

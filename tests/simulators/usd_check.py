@@ -54,6 +54,25 @@ def check(prim, body, boxes):
         assert len(colours.ComputeFlattened()) in (1, len(UsdGeom.Mesh(seen).GetPointsAttr().Get())), name
 
 
+def check_front(stage, name, of, front, boxes):
+    prim, joint = stage.GetPrimAtPath(f'/World/{name}'), stage.GetPrimAtPath(f'/World/{front["joint"]}')
+    place = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default()).ExtractTranslation()
+    near(name, place, front['center'], 1e-6)
+    mass = UsdPhysics.MassAPI(prim)
+    turn = mass.GetPrincipalAxesAttr().Get()
+    near_inertia(name, mass.GetDiagonalInertiaAttr().Get(), matrix(turn.GetReal(), *turn.GetImaginary()), front)
+    bounds = boxes.ComputeWorldBound(prim).ComputeAlignedRange()
+    near(name, [bounds.GetMin(), bounds.GetMax()], [front['low'], front['high']], WITHIN_M)
+    kind = UsdPhysics.PrismaticJoint if front['slides'] else UsdPhysics.RevoluteJoint
+    made = kind(joint)
+    assert made and [str(t) for t in made.GetBody0Rel().GetTargets() + made.GetBody1Rel().GetTargets()] == [f'/World/{of}', f'/World/{name}'], name
+    assert made.GetAxisAttr().Get() == 'X', name
+    turn = made.GetLocalRot0Attr().Get()
+    near(name, matrix(turn.GetReal(), *turn.GetImaginary())[:, 0], front['axis'], 1e-6)
+    near(name, made.GetUpperLimitAttr().Get(), front['most'] * (1 if front['slides'] else 180 / np.pi), 1e-4)
+    near(name, np.array(made.GetLocalPos1Attr().Get()) + front['center'], front['at'], 1e-6)
+
+
 expected = Expected(sys.argv[1])
 stage = Usd.Stage.Open(expected.path('scene.usda'))
 check_rules(stage, expected.path('scene.usda'))
@@ -63,8 +82,11 @@ physics = UsdPhysics.Scene(stage.GetDefaultPrim().GetChild('physics'))
 near('gravity', physics.GetGravityMagnitudeAttr().Get(), expected.gravity, 1e-5)
 near('gravity', physics.GetGravityDirectionAttr().Get(), [0, 0, -1], 0)
 bodies = [p for p in stage.GetDefaultPrim().GetChildren() if p.GetTypeName() == 'Xform']
-assert {p.GetName() for p in bodies} == set(expected.bodies)
+assert {p.GetName() for p in bodies} == set(expected.bodies) | set(expected.fronts())
 boxes = UsdGeom.BBoxCache(Usd.TimeCode.Default(), [UsdGeom.Tokens.default_, UsdGeom.Tokens.guide])
 for prim in bodies:
-    check(prim, expected.bodies[prim.GetName()], boxes)
+    if prim.GetName() in expected.bodies:
+        check(prim, expected.bodies[prim.GetName()], boxes)
+for name, (of, front) in expected.fronts().items():
+    check_front(stage, name, of, front, boxes)
 print('usd has read all')

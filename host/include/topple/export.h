@@ -21,7 +21,10 @@ struct ExportOptions {
     // What to write, by format, one at least: the folders for scene.xml (MuJoCo's MJCF, with
     // scene_asleep.xml beside it), scene.urdf and scene.sdf, and the file, NAME.usda.
     std::filesystem::path mjcf, urdf, sdf, usd;
-    bool visuals = true;   // what bodies look like, in the scan's colours, beside what collides
+    bool visuals = true;  // what bodies look like, in the scan's colours, beside what collides
+    // Doors and drawers of closed furniture as bodies on joints, as far as the scan's points tell
+    // their handles.
+    bool joints = true;
     unsigned threads = 0;  // 0: all cores; the result is the same
     // Polled between steps, which take seconds each; true ends the export with Error(cancelled),
     // before it has written anything.
@@ -48,9 +51,23 @@ struct ExportedBody {
     double lost_share() const { return solid_m3 > 0 ? lost_m3 / solid_m3 : 0; }
 };
 
+// A door or a drawer: a body on a joint to its object's, shut as it was scanned.
+struct ExportedFront {
+    std::string name;          // in the exports: "object_3_front_0", its joint "..._joint"
+    std::int32_t object = -1;  // id
+    std::string opens;         // "slide", or "hinge"
+    double probability = 0;    // that it is there, and opens so
+    Vec3 middle_m{};           // of its outer face
+    double wide_m = 0, high_m = 0;
+    Vec3 axis{};      // unit; it opens along it, or around it by the right-hand rule
+    Vec3 at_m{};      // a point of a hinge's axis; of a slide middle_m
+    double most = 0;  // how far it opens: metres, or radians
+};
+
 struct ExportSummary {
-    std::vector<ExportedBody> bodies;  // those of the objects by id, then pads
-    double deepest_overlap_m = 0;      // of any two bodies
+    std::vector<ExportedBody> bodies;     // those of the objects by id, then pads
+    std::vector<ExportedFront> fronts{};  // by object
+    double deepest_overlap_m = 0;         // of any two bodies
     // Height of the lowest level floor, and the middle of the widest place on it where nothing
     // stands, with its radius: NaN and 0 where there is none.
     double floor_m = std::numeric_limits<double>::quiet_NaN();

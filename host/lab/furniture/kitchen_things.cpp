@@ -33,8 +33,9 @@ struct Front {
 };
 
 void add_front(Blueprint& b, const Front& f, const char* name, bool drawer, Random& random) {
-    b.box(name, f.x, f.y + 0.01, f.bottom, {f.wide, 0.02, f.high});
+    const int front = b.box(name, f.x, f.y + 0.01, f.bottom, {f.wide, 0.02, f.high});
     const double side = f.hinge_left ? 1 : -1;
+    b.parts[front].opening = drawer ? Opening::slide : hinge_at(-side);
     add_handle(b, drawer ? f.x : f.x + side * (f.wide / 2 - 0.05), f.y + 0.02,
                drawer ? f.bottom + 0.6 * f.high : f.bottom + 0.5 * f.high, !drawer, f.style,
                random);
@@ -66,9 +67,10 @@ int add_cabinet(Blueprint& b, const CabinetPlace& p, Random& random, double open
         const int top = b.box("top", p.x, p.back + d / 2, p.bottom + h - 0.018, {w, d, 0.018});
         if (random.chance(0.6)) {  // a door ajar
             const double side = random.chance(0.5) ? 1 : -1, angle = random(0.5, 1.8);
-            b.box("door", p.x + side * (w / 2 - std::cos(angle) * w / 2),
-                  y + 0.012 + std::sin(angle) * w / 2, p.bottom + 0.003, {w, 0.02, h - 0.006},
-                  -side * angle);
+            const int door = b.box("door", p.x + side * (w / 2 - std::cos(angle) * w / 2),
+                                   y + 0.012 + std::sin(angle) * w / 2, p.bottom + 0.003,
+                                   {w, 0.02, h - 0.006}, -side * angle);
+            b.parts[door].opening = hinge_at(side);
         }
         return top;
     }
@@ -183,7 +185,9 @@ Blueprint make_fridge(Random& random) {
     double from = foot + 0.02;
     for (const double to : {split, h}) {
         if (to - from < 0.1) continue;
-        b.rounded("door", 0, d / 2 + 0.03, from, {w, 0.055, to - from - 0.006}, 0.01);
+        const int door =
+            b.rounded("door", 0, d / 2 + 0.03, from, {w, 0.055, to - from - 0.006}, 0.01);
+        b.parts[door].opening = hinge_at(-side);
         b.box("handle", side * (w / 2 - 0.05), d / 2 + 0.085, from + 0.4 * (to - from),
               {0.02, 0.02, std::min(0.4, 0.4 * (to - from))});
         for (const double s : {0.42, 0.75})
@@ -205,7 +209,8 @@ Blueprint make_appliance(Random& random) {
     if (which == 1) {
         b.lying("door", 0, d / 2 + 0.02, 0.25 * h, 0.05, 0.34, std::numbers::pi / 2);
     } else {
-        b.box("door", 0, d / 2 + 0.012, foot + 0.08, {w - 0.01, 0.024, h - 0.26});
+        const int door = b.box("door", 0, d / 2 + 0.012, foot + 0.08, {w - 0.01, 0.024, h - 0.26});
+        b.parts[door].opening = Opening::hinge_below;
         b.box("handle", 0, d / 2 + 0.05, h - 0.22, {0.7 * w, 0.02, 0.02});
         for (const double s : {-0.3, 0.3})
             b.box("handle", s * w, d / 2 + 0.032, h - 0.22, {0.02, 0.02, 0.02});

@@ -91,8 +91,10 @@ Blueprint make_wardrobe(Random& random) {
         // The door's middle seen from its hinge, before it opens.
         const Pose hinge{side * w / 2, d / 2, 0, -side * open};
         const Vec3 middle = moved(hinge, Vec3{-side * width / 2, t / 2, 0});
-        b.join(body, b.box("door", middle[0], middle[1], plinth + 0.02,
-                           {width, t, h - plinth - 0.04}, -side * open));
+        const int door = b.box("door", middle[0], middle[1], plinth + 0.02,
+                               {width, t, h - plinth - 0.04}, -side * open);
+        b.parts[door].opening = hinge_at(side);
+        b.join(body, door);
     }
     b.surfaces.push_back({body, 0, 0, w / 2 - 0.02, d / 2 - 0.03, 0.3, "wardrobe"});
     return b;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/vectors.h"
 #include "io/file_writer.h"
 #include "lab/scan/files.h"
 #include "lab/scan/scan.h"
@@ -50,6 +51,35 @@ nlohmann::json box_of(const World& world, std::int32_t object) {
     return all;
 }
 
+Vec3 rounded(const Vec3& p) {
+    return {rounded(p[0]), rounded(p[1]), rounded(p[2])};
+}
+
+// Its doors and drawers: middle and sides, the axis (unit; the way that drawers come out), and a
+// point that a hinge's axis goes through.
+nlohmann::json fronts_of(const World& world, std::int32_t object) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Part& p : world.parts) {
+        if (p.object != object || p.opening == Opening::none) continue;
+        const auto [across, out, up] = p.axes();
+        const bool below = p.opening == Opening::hinge_below, slides = p.opening == Opening::slide;
+        const double side = p.opening == Opening::hinge_at_low_x ? -1 : 1;
+        nlohmann::json front{{"name", p.name},
+                             {"center", rounded(p.center)},
+                             {"size", rounded(p.size)},
+                             {"yaw", rounded(p.yaw)},
+                             {"kind", slides ? "slide" : "hinge"},
+                             {"axis", rounded(slides  ? out
+                                              : below ? across
+                                                      : up)}};
+        if (!slides)
+            front["at"] = rounded(below ? along(p.center, -p.size[2] / 2, up)
+                                        : along(p.center, side * p.size[0] / 2, across));
+        list.push_back(std::move(front));
+    }
+    return list;
+}
+
 nlohmann::json objects_json(const World& world, const Scan& scan) {
     std::vector<std::size_t> points(world.objects.size());
     for (const LabelledPoint& p : scan.truth) ++points[p.object];
@@ -78,6 +108,8 @@ nlohmann::json objects_json(const World& world, const Scan& scan) {
         if (n > 0) {
             object["box"] = box_of(world, static_cast<std::int32_t>(n));
             object["note"] = world.objects[n].where;
+            if (auto fronts = fronts_of(world, static_cast<std::int32_t>(n)); !fronts.empty())
+                object["fronts"] = std::move(fronts);
         }
         list.push_back(std::move(object));
     }

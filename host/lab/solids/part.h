@@ -22,6 +22,14 @@ enum class Shape {
 };
 const char* to_string(Shape shape);
 
+// How a front of furniture opens: about the edge at its own lowest or highest x, or about its lower
+// one; or it is drawn out, towards its own +y.
+enum class Opening : std::uint8_t { none, hinge_at_low_x, hinge_at_high_x, hinge_below, slide };
+
+inline Opening hinge_at(double side) {
+    return side < 0 ? Opening::hinge_at_low_x : Opening::hinge_at_high_x;
+}
+
 // One solid whose every measure is known exactly. All but `revolved` are convex. Metres, radians,
 // room frame.
 struct Part {
@@ -36,6 +44,7 @@ struct Part {
     double rounding = 0;        // rounded boxes only: radius of all edges and corners
     solids::Profile profile{};  // revolved ones only: about the center
     std::array<std::uint8_t, 3> colour{200, 200, 200};  // red, green, blue in white light
+    Opening opening = Opening::none;
 
     double volume() const;                 // closed form
     Vec3 center_of_mass() const;           // closed form, room frame

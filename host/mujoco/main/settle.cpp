@@ -92,7 +92,7 @@ Settled settle(const std::filesystem::path& file, double seconds, double patienc
         out.deepest_m = std::max(out.deepest_m, -double{data.contact[n].dist});
     std::vector<std::size_t> free;
     for (std::size_t b = 1; b < static_cast<std::size_t>(model.nbody); ++b) {
-        if (model.body_jntnum[b] == 0) continue;
+        if (model.body_dofnum[b] != 6) continue;  // held, or a front on its joint
         free.push_back(b);
         out.motions.push_back({mj_id2name(&model, mjOBJ_BODY, static_cast<int>(b)), 0, 0, 0});
     }

@@ -35,7 +35,7 @@ from ._topple import Advice, Alternative, AppliedCorrection, Contact, Device, Di
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'Alignment', 'Alternative', 'Appeared', 'AppliedCorrection', 'ComparedThing', 'Comparison', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'FallsWithout', 'Hold', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
+__all__ = ['Advice', 'Alignment', 'Alternative', 'Appeared', 'AppliedCorrection', 'ComparedThing', 'Comparison', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'ExportedFront', 'Fall', 'FallsWithout', 'Hold', 'Holder', 'Landscape', 'LiveScene', 'Object', 'Overturning', 'PossibleThing', 'Primitive', 'RemovalOrder', 'Result',
            'Session', 'Support', 'Thing', 'Unheld', 'Why', '__version__', 'compare', 'devices', 'formats', 'generate', 'kernels', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _shown.items()
@@ -71,6 +71,20 @@ class ExportedBody(NamedTuple):
     lost_share: "Optional[float]"  # lost_m3 as a share of solid_m3, which may be above 1; None for a pad
 
 
+class ExportedFront(NamedTuple):
+    """A door or a drawer in an export: a body on a joint to its object's, shut as it was scanned (docs/export.md)."""
+    name: str  # in the export: "object_3_front_0", and "..._joint" that of its joint
+    object: int  # id
+    opens: str  # "slide" or "hinge"
+    probability: float  # that it is there, and opens so
+    middle_m: "list[float]"  # of its outer face, z up
+    wide_m: float
+    high_m: float
+    axis: "list[float]"  # unit; it opens along it, or around it by the right-hand rule
+    at_m: "list[float]"  # a point of a hinge's axis; of a slide middle_m
+    most: float  # how far it opens: metres, or radians
+
+
 class ExportSummary(NamedTuple):
     """What Result.export() made."""
     bodies: "list[ExportedBody]"  # those of the objects by id, then pads
@@ -79,6 +93,7 @@ class ExportSummary(NamedTuple):
     free_place_m: "Optional[list[float]]"  # the middle of the widest place on it where nothing stands, x, y, z; None: there is none
     free_radius_m: float  # of that place; 0: there is none
     notes: "list[str]"  # what is not as it was parsed, such as bodies that were cut to half
+    fronts: "list[ExportedFront]" = []  # doors and drawers, by object
 
     def __repr__(self):
         fixed = sum(body.fixed for body in self.bodies)
@@ -271,13 +286,13 @@ class Result:
             _topple.write(self._whole('write'), os.fspath(folder), pictures, glb, octomap, self._points or [],
                           list(self._colours))
 
-    def export(self, *, mjcf=None, urdf=None, sdf=None, usd=None, visuals=True, threads=0):
+    def export(self, *, mjcf=None, urdf=None, sdf=None, usd=None, visuals=True, joints=True, threads=0):
         """Writes the scene for simulators, in the formats whose paths are given, and what became of each body as
         bodies.json beside it (docs/export.md); returns an ExportSummary. mjcf, urdf, sdf: the folders for scene.xml
         (MuJoCo's format), scene.urdf and scene.sdf; usd: the file, NAME.usda. visuals: what bodies look like, in the
-        scan's colours, beside what collides. Folders are made where they are missing; an earlier export is replaced, a
-        file of others is an Error of kind "input". threads: 0 for all cores; the result is the same. Other threads of
-        Python run meanwhile."""
+        scan's colours, beside what collides. joints: doors and drawers, which their handles tell, as bodies on joints.
+        Folders are made where they are missing; an earlier export is replaced, a file of others is an Error of kind
+        "input". threads: 0 for all cores; the result is the same. Other threads of Python run meanwhile."""
         paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
         given = {name: _file(name, path) for name, path in paths.items() if path is not None}
         for name, path in given.items():
@@ -285,11 +300,12 @@ class Result:
                 top = {'mjcf': 'scene.xml'}.get(name, f'scene.{name}')
                 raise _usage(f'{name}: {path} looks like a file; it is a folder, into which {top} is written: '
                              f'give {name}={os.path.dirname(path) or "."!r}, say')
-        visuals, threads = _option('visuals', visuals), _option('threads', threads)
+        visuals, joints, threads = _option('visuals', visuals), _option('joints', joints), _option('threads', threads)
         with self._writing:
-            bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, threads, list(self._points or []),
+            bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, joints, threads, list(self._points or []),
                                                  list(self._colours))
-        return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
+        *rest, fronts = rest
+        return ExportSummary([ExportedBody(*body) for body in bodies], *rest, [ExportedFront(*front) for front in fronts])
 
 
 def load(folder):

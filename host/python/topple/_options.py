@@ -73,7 +73,7 @@ _KINDS = {
     'three finite numbers, as [1, 0, 0], or None': (_vector, ('up', 'viewpoint', 'motion_up', 'way')),
     'three finite numbers, as [0.5, 1, 0.2]': (_vector, ('place_m',)),
     '"g", "m/s2", "cm/s2", or None': (_text, ('accelerogram_unit',)),
-    'True or False': (_flag, ('isolate', 'space_fields', 'visuals', 'forget_gone')),
+    'True or False': (_flag, ('isolate', 'space_fields', 'visuals', 'joints', 'forget_gone')),
     'a name, a list of names, or None': (_names, ('disturbances',)),
     'a name, or a list of names': (_names, ('people',)),
     "a Device of topple.open_device(), a backend's name, or None": (_device, ('device',)),

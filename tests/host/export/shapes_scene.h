@@ -34,8 +34,33 @@ inline Visual painted_block(const Vec3& low, const Vec3& high, const Rgb8& colou
     return out;
 }
 
-// On a floor: a box and one on it, a lying cylinder, a ball, a ramp and a tilted box in the wall;
-// the boxes have a surface.
+// A cabinet's door, whose hinge is at the lower x, and the drawer above it. low, high: of the
+// cabinet, whose front looks to -y.
+inline std::vector<Front> door_and_drawer(const Vec3& low, const Vec3& high) {
+    const double wide = high[0] - low[0], middle = (low[0] + high[0]) / 2,
+                 parted = low[2] + 0.7 * (high[2] - low[2]);
+    Front door;
+    door.opening = Opening::hinge_at_low_u;
+    door.probability = 0.9;
+    door.out = {0, -1, 0};
+    door.across = {1, 0, 0};
+    door.wide_m = wide;
+    door.high_m = parted - low[2];
+    door.middle = {middle, low[1], (low[2] + parted) / 2};
+    door.deep_m = high[1] - low[1];
+    door.grip = {high[0] - 0.05, low[1] - 0.015, door.middle[2]};
+    door.grip_m = {0.02, 0.03, 0.15};
+    Front drawer = door;
+    drawer.opening = Opening::slide;
+    drawer.high_m = high[2] - parted;
+    drawer.middle[2] = (parted + high[2]) / 2;
+    drawer.grip = {middle, low[1] - 0.015, drawer.middle[2]};
+    drawer.grip_m = {0.15, 0.03, 0.02};
+    return {door, drawer};
+}
+
+// On a floor: a box and one on it, a lying cylinder, a ball, a ramp, a tilted box in the wall, and
+// a cabinet with a door and a drawer; the boxes and the cabinet have a surface.
 inline SimScene shapes_scene() {
     SimScene out;
     out.friction = 0.4;
@@ -65,6 +90,13 @@ inline SimScene shapes_scene() {
     ConvexPart tilted = *hull_part(prism({0.5, -0.5, 0.3}, {0.6, 0, 0.8}, 0.1, 0.2, 4));
     add(std::move(tilted), 0);
     out.bodies[2].friction = 0.7;  // of rubber
+    const Vec3 low{-0.9, -0.9, 0}, high{-0.4, -0.5, 0.6};
+    Body& cabinet = add(block(low, high), 1);
+    std::vector<std::vector<Front>> fronts(out.bodies.size());
+    fronts.back() = door_and_drawer(low, high);
+    out.fronts = jointed_fronts(out.bodies, fronts, 700);
+    cabinet.visual =
+        painted_block(minus(low, cabinet.center_m), minus(high, cabinet.center_m), {150, 110, 70});
     return out;
 }
 

@@ -241,6 +241,28 @@ TEST(CellShape, TheUndersideIsThereWhereverThePatchBelowPasses) {
     }
 }
 
+// Two cells each of three primitives: of the first surfaces leave nothing, of the second something
+// in one cell, and of the third they say nothing in one.
+TEST(Boundary, WhatSurfacesLeaveNothingOfIsSolidAsWholeVoxels) {
+    SolidCells cells;
+    BoundaryCells all;
+    for (std::int32_t i = 0; i < 6; ++i) {
+        cells.add({i, 0, 0}, i / 2, Basis::surface);
+        if (i == 5) continue;
+        all.i.push_back(i);
+        all.j.push_back(0);
+        all.k.push_back(0);
+        all.primitive.push_back(i / 2);
+        for (auto& slot : all.slot) slot.push_back(0);
+        all.form.push_back(0);
+        all.share.push_back(i == 3 ? 7 : 0);
+        for (auto& moment : all.moment) moment.push_back(0);
+    }
+    const BoundaryCells kept = without_void_solids(cells, all, 3);
+    EXPECT_EQ(kept.i, (std::vector<std::int32_t>{2, 3, 4}));
+    EXPECT_EQ(kept.primitive, (std::vector<std::int32_t>{1, 1, 2}));
+}
+
 TEST(Boundary, NothingSeenBoundsNothing) {
     Scanned s = scan({{{0, 0, 0}, {0.05, 0.05, 0.05}}}, 0.02);
     s.cloud = {};

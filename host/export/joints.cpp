@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "export/joints.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <numbers>
+
+#include "core/vectors.h"
+#include "export/named_bodies.h"
+#include "export/separate.h"
+#include "physics/closed_furniture.h"
+
+namespace topple::exports {
+namespace {
+
+constexpr double board_m = physics::ClosedBody::board_m;
+constexpr double up_z = 1;
+constexpr double clear_m = 0.002;  // between a front and the next one
+
+// A box with sides along across, out and up.
+Box box_of(const Front& front, const Vec3& center, const Vec3& sides_m) {
+    return {center,
+            {opposite(front.across), front.out, {0, 0, up_z}},
+            {sides_m[0] / 2, sides_m[1] / 2, sides_m[2] / 2}};
+}
+
+// Of a front's frame: across, out, up from the middle of its outer face.
+Vec3 place(const Front& front, double across, double out, double up) {
+    return along(along(along(front.middle, across, front.across), out, front.out), up,
+                 {0, 0, up_z});
+}
+
+double volume_m3(const Box& box) {
+    return 8 * box.half_m[0] * box.half_m[1] * box.half_m[2];
+}
+
+// Boards that lie within what is solid behind the front. A drawer has a floor and three walls, too.
+std::vector<Box> boards_of(const Front& front, double deep_m) {
+    const double wide = front.wide_m - 2 * clear_m, high = front.high_m - 2 * clear_m;
+    std::vector<Box> out{box_of(front, place(front, 0, -board_m / 2, 0), {wide, board_m, high})};
+    if (front.opening != Opening::slide) return out;
+    constexpr double thin_m = 0.01, beside_m = 0.02, wall_share = 0.7;
+    const double inner = wide - 2 * beside_m, long_m = deep_m - board_m,
+                 middle = -board_m - long_m / 2;
+    const double floor = -high / 2 + beside_m, walls = wall_share * (high - beside_m);
+    out.push_back(box_of(front, place(front, 0, middle, floor), {inner, long_m, thin_m}));
+    const double wall_z = floor + thin_m / 2 + walls / 2;
+    for (const double side : {-1.0, 1.0})
+        out.push_back(box_of(front, place(front, side * (inner - thin_m) / 2, middle, wall_z),
+                             {thin_m, long_m, walls}));
+    out.push_back(box_of(front, place(front, 0, -deep_m + thin_m / 2, wall_z),
+                         {inner - 2 * thin_m, thin_m, walls}));
+    return out;
+}
+
+Eigen::Vector3d vec(const Vec3& v) {
+    return {v[0], v[1], v[2]};
+}
+
+// m (|d|^2 1 - d d^T): what a mass adds about a point so far away.
+Eigen::Matrix3d point_inertia(double mass_kg, const Eigen::Vector3d& d) {
+    return mass_kg * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
+}
+
+Eigen::Matrix3d matrix(const Mat3& m) {
+    return Eigen::Matrix3d(m.data());  // symmetric: rows or columns
+}
+
+Mat3 rows_of(const Eigen::Matrix3d& m) {
+    Mat3 out{};
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) out[3 * r + c] = (m(r, c) + m(c, r)) / 2;
+    return out;
+}
+
+void weigh(JointedFront& front, double density_kg_m3) {
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    for (const Box& box : front.boxes) {
+        const double mass = density_kg_m3 * volume_m3(box);
+        front.mass_kg += mass;
+        moment += mass * vec(box.center);
+    }
+    const Eigen::Vector3d center = moment / front.mass_kg;
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+    for (const Box& box : front.boxes) {
+        const double mass = density_kg_m3 * volume_m3(box);
+        Eigen::Matrix3d axes;
+        for (int a = 0; a < 3; ++a) axes.col(a) = vec(box.axis[a]);
+        const Eigen::Vector3d h2 = vec(box.half_m).cwiseAbs2();
+        const Eigen::Vector3d own(h2[1] + h2[2], h2[0] + h2[2], h2[0] + h2[1]);
+        inertia += mass / 3 * (axes * own.asDiagonal() * axes.transpose()).eval() +
+                   point_inertia(mass, vec(box.center) - center);
+    }
+    front.center_m = {center[0], center[1], center[2]};
+    front.inertia_kg_m2 = rows_of(inertia);
+}
+
+// Takes what a front weighs out of its body, so that both together are what the body was. False
+// where the rest would be no rigid body.
+bool take_out(const JointedFront& front, Body& body) {
+    constexpr double most_share = 0.3;
+    if (!has_inertia(body) || front.mass_kg > most_share * body.mass_kg) return false;
+    Body rest = body;
+    rest.mass_kg -= front.mass_kg;
+    const Eigen::Vector3d center =
+        (body.mass_kg * vec(body.center_m) - front.mass_kg * vec(front.center_m)) / rest.mass_kg;
+    rest.center_m = {center[0], center[1], center[2]};
+    rest.inertia_kg_m2 =
+        rows_of(matrix(body.inertia_kg_m2) - matrix(front.inertia_kg_m2) -
+                point_inertia(front.mass_kg, vec(front.center_m) - vec(body.center_m)) -
+                point_inertia(rest.mass_kg, center - vec(body.center_m)));
+    if (!has_inertia(rest)) return false;
+    body = std::move(rest);
+    return true;
+}
+
+void add_axis(const Front& from, JointedFront& to, double deep_m) {
+    constexpr double drawn_share = 0.75;
+    to.most = std::numbers::pi / 2;
+    switch (from.opening) {
+        case Opening::slide:
+            to.axis = from.out;
+            to.at_m = from.middle;
+            to.most = drawn_share * deep_m;
+            break;
+        case Opening::hinge_at_low_u:
+            to.axis = {0, 0, -up_z};
+            to.at_m = place(from, -from.wide_m / 2, 0, 0);
+            break;
+        case Opening::hinge_at_high_u:
+            to.axis = {0, 0, up_z};
+            to.at_m = place(from, from.wide_m / 2, 0, 0);
+            break;
+        case Opening::hinge_below:
+            to.axis = from.across;
+            to.at_m = place(from, 0, 0, -from.high_m / 2);
+            break;
+    }
+}
+
+// Whether a handle would lie in another body, which may be what was seen of it.
+bool is_free(const Box& grip, const std::vector<Body>& bodies, std::size_t own) {
+    const std::array<Vec3, 8> corners = grip.corners();
+    const std::optional<ConvexPart> part = hull_part(corners);
+    if (!part) return false;
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        if (n == own) continue;
+        for (const ConvexPart& other : bodies[n].parts)
+            if (near(*part, other, 0) && overlap(*part, other)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::vector<JointedFront> jointed_fronts(std::vector<Body>& bodies,
+                                         const std::vector<std::vector<Front>>& of_object,
+                                         double density_kg_m3) {
+    constexpr double behind_m = 0.05, most_deep_m = 0.6;  // of a drawer, from what is behind it
+    std::vector<JointedFront> out;
+    for (std::size_t n = 0; n < std::min(bodies.size(), of_object.size()); ++n) {
+        Body& body = bodies[n];
+        if (body.parts.empty()) continue;
+        std::size_t number = 0;
+        for (Front front : of_object[n]) {
+            front.middle = plus(front.middle, body.moved_m);
+            front.grip = plus(front.grip, body.moved_m);
+            const double deep_m = std::min(most_deep_m, front.deep_m - behind_m);
+            JointedFront made;
+            made.name = body_name(body, n) + "_front_" + std::to_string(number);
+            made.body = n;
+            made.opening = front.opening;
+            made.probability = front.probability;
+            made.middle_m = front.middle;
+            made.colour = front.colour;
+            made.wide_m = front.wide_m;
+            made.high_m = front.high_m;
+            made.boxes = boards_of(front, deep_m);
+            if (const Box grip = box_of(front, front.grip, front.grip_m); is_free(grip, bodies, n))
+                made.boxes.push_back(grip);
+            add_axis(front, made, deep_m);
+            weigh(made, density_kg_m3);
+            if (!body.fixed && !take_out(made, body)) continue;
+            ++number;
+            out.push_back(std::move(made));
+        }
+    }
+    return out;
+}
+
+}  // namespace topple::exports
