@@ -98,6 +98,9 @@ inline constexpr auto kind<Overturning> = described(
     field("slide_N", &Overturning::slide_N,
           "friction x M g, newtons: level push that slides it; if less, it slides first",
           &topple_object::slide_N),
+    field("slide_error_N", &Overturning::slide_error_N,
+          "one standard error of that, newtons; a coefficient that nobody told is known to a third",
+          Note{.since = "slide_error_N"}, &topple_object::slide_error_N),
     field("hand_push_N", &Overturning::hand_push_N,
           "as `push_N`, at a hand's height: 1 m above the floor, its top if lower, its centre if "
           "its support is higher",

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "core/field_rules.h"
 #include "core/rotation.h"
 #include "core/vectors.h"
 
@@ -41,13 +42,15 @@ struct Points {
 
 Points world_points(const Scene& scene) {
     const ScenePoints& from = scene.points;
-    const std::size_t count = from.x.size();
+    const std::size_t count = from.nx.size() == from.x.size() ? from.x.size() : 0;
     const Rotation turn = rotation_of(scene.manhattan_from_input);
     std::vector<Vec3> at(count);
     for (std::size_t n = 0; n < count; ++n)
         at[n] = transformed(scene.manhattan_from_input, {from.x[n], from.y[n], from.z[n]});
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0u);
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t n = 0; n < count; ++n)
+        if (rules::finite(at[n]) && std::isfinite(from.nx[n] + from.ny[n] + from.nz[n]))
+            order.push_back(n);
     std::ranges::sort(order, {}, [&](std::uint32_t n) { return std::pair(at[n], n); });
     Points out;
     for (const std::uint32_t n : order) {
@@ -133,88 +136,102 @@ struct Plane {
     double at_m = 0;
 };
 
-// The upright planes in which most of an object's points lie whose normals go with them.
-std::vector<Plane> upright_planes(const Points& points, std::span<const std::uint32_t> own) {
-    constexpr int bins = 72, beside = 4;
-    constexpr float upright = 0.35f;
-    std::vector<std::uint32_t> sides;
-    std::vector<double> heading;
-    std::array<std::uint32_t, bins> raw{};
-    for (const std::uint32_t n : own) {
-        if (!(std::abs(points.nz[n]) < upright)) continue;
-        sides.push_back(n);
-        heading.push_back(std::atan2(points.ny[n], points.nx[n]));
-        const double turns = heading.back() / (2 * std::numbers::pi) + 0.5;
-        ++raw[std::min(bins - 1, static_cast<int>(turns * bins))];
-    }
-    std::array<std::size_t, bins> count{}, order{};
-    for (int b = 0; b < bins; ++b)
-        count[b] = raw[b] + raw[(b + 1) % bins] + raw[(b + bins - 1) % bins];
+// Places of counts of least_points or more, the largest first, without those that lie so near to a
+// larger one. ring: the last count lies beside the first.
+std::vector<std::size_t> peaks(const std::vector<std::size_t>& count, std::size_t near, bool ring) {
+    std::vector<std::size_t> order(count.size()), out;
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::ranges::greater{},
-                             [&](std::size_t b) { return count[b]; });
-    std::array<bool, bins> used{};
+                             [&](std::size_t n) { return count[n]; });
+    std::vector<bool> taken(count.size());
+    for (const std::size_t n : order) {
+        if (count[n] < least_points) break;
+        if (taken[n]) continue;
+        out.push_back(n);
+        for (std::size_t k = n + count.size() - near; k <= n + count.size() + near; ++k)
+            if (ring || (k >= count.size() && k < 2 * count.size())) taken[k % count.size()] = true;
+    }
+    return out;
+}
+
+// The upright plane through those points that lie near middle_m along `facing`; nothing where
+// it looks another way.
+std::optional<Plane> plane_near(const Points& points, std::span<const std::uint32_t> which,
+                                const Vec3& facing, double middle_m) {
+    const double least_cosine = std::cos(8 * std::numbers::pi / 180);
+    std::vector<Vec3> on;
+    Vec3 sum{};
+    for (const std::uint32_t n : which) {
+        if (std::abs(dot(facing, points.at(n)) - middle_m) > 1.5 * cell_m) continue;
+        on.push_back(points.at(n));
+        sum = plus(sum, on.back());
+    }
+    const Vec3 centre = along({}, 1.0 / static_cast<double>(on.size()), sum);
+    double xx = 0, xy = 0, yy = 0;
+    for (const Vec3& p : on) {
+        const Vec3 d = minus(p, centre);
+        xx += d[0] * d[0], xy += d[0] * d[1], yy += d[1] * d[1];
+    }
+    // The line through them, as seen from above.
+    const double turn = std::atan2(2 * xy, xx - yy) / 2;
+    Plane out{{-std::sin(turn), std::cos(turn), 0}};
+    if (dot(out.out, facing) < 0) out.out = opposite(out.out);
+    if (on.empty() || dot(out.out, facing) < least_cosine) return {};
+    std::vector<double> at;
+    for (const Vec3& p : on) at.push_back(dot(out.out, p));
+    const auto half = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
+    std::nth_element(at.begin(), half, at.end());
+    out.at_m = *half;
+    return out;
+}
+
+// The same in all depths in which many of these points lie.
+void add_planes(const Points& points, std::span<const std::uint32_t> which, const Vec3& facing,
+                std::vector<Plane>& out) {
+    constexpr double most_deep_m = 1000;
+    std::vector<double> depth;
+    for (const std::uint32_t n : which) depth.push_back(dot(facing, points.at(n)));
+    const auto [low, high] = std::ranges::minmax(depth);
+    if (!(high - low < most_deep_m)) return;
+    std::vector<std::size_t> layer(static_cast<std::size_t>((high - low) / cell_m) + 2);
+    for (const double d : depth) {  // each of two layers
+        const auto n = static_cast<std::size_t>((d - low) / cell_m);
+        ++layer[n];
+        if (n > 0) ++layer[n - 1];
+    }
+    for (const std::size_t n : peaks(layer, 2, false))
+        if (const auto plane =
+                plane_near(points, which, facing, low + cell_m * (static_cast<double>(n) + 1)))
+            out.push_back(*plane);
+}
+
+// The upright planes in which most of an object's points lie whose normals go with them.
+std::vector<Plane> upright_planes(const Points& points, std::span<const std::uint32_t> own) {
+    constexpr std::size_t bins = 72, near = 4;
+    constexpr float upright = 0.35f;
+    const double least_cosine = std::cos(12 * std::numbers::pi / 180);
+    std::vector<std::uint32_t> sides;
+    std::vector<std::size_t> count(bins);  // each of three bins
+    for (const std::uint32_t n : own) {
+        if (std::abs(points.nz[n]) >= upright) continue;
+        sides.push_back(n);
+        const double turns = std::atan2(points.ny[n], points.nx[n]) / (2 * std::numbers::pi) + 0.5;
+        const std::size_t b = std::min(bins - 1, static_cast<std::size_t>(turns * bins));
+        for (const std::size_t each : {b + bins - 1, b, b + 1}) ++count[each % bins];
+    }
     std::vector<Plane> out;
-    for (const std::size_t b : order) {
-        if (count[b] < least_points) break;
-        if (used[b]) continue;
-        for (int k = -beside; k <= beside; ++k)
-            used[(static_cast<int>(b) + k + bins) % bins] = true;
-        const double middle = ((static_cast<double>(b) + 0.5) / bins - 0.5) * 2 * std::numbers::pi;
+    for (const std::size_t b : peaks(count, near, true)) {
+        const double heading = ((static_cast<double>(b) + 0.5) / bins - 0.5) * 2 * std::numbers::pi;
+        const Vec3 middle{std::cos(heading), std::sin(heading), 0};
         std::vector<std::uint32_t> facing;
-        double sine = 0, cosine = 0;
-        for (std::size_t n = 0; n < sides.size(); ++n) {
-            if (std::cos(heading[n] - middle) < std::cos(12 * std::numbers::pi / 180)) continue;
-            facing.push_back(sides[n]);
-            sine += std::sin(heading[n]);
-            cosine += std::cos(heading[n]);
+        Vec3 sum{};
+        for (const std::uint32_t n : sides) {
+            const Vec3 level = unit({points.nx[n], points.ny[n], 0});
+            if (dot(level, middle) < least_cosine) continue;
+            facing.push_back(n);
+            sum = plus(sum, level);
         }
-        const Vec3 mean = unit({cosine, sine, 0});
-        double low = INFINITY, high = -INFINITY;
-        for (const std::uint32_t n : facing) {
-            const double d = dot(mean, points.at(n));
-            low = std::min(low, d);
-            high = std::max(high, d);
-        }
-        if (!(high - low < 1e3)) continue;
-        std::vector<std::size_t> layer(static_cast<std::size_t>((high - low) / cell_m) + 2);
-        for (const std::uint32_t n : facing)
-            ++layer[static_cast<std::size_t>((dot(mean, points.at(n)) - low) / cell_m)];
-        std::vector<std::size_t> two(layer.size()), by(layer.size());
-        for (std::size_t q = 0; q + 1 < layer.size(); ++q) two[q] = layer[q] + layer[q + 1];
-        std::iota(by.begin(), by.end(), std::size_t{0});
-        std::ranges::stable_sort(by, std::ranges::greater{}, [&](std::size_t q) { return two[q]; });
-        std::vector<bool> taken(layer.size());
-        for (const std::size_t q : by) {
-            if (two[q] < least_points) break;
-            if (taken[q]) continue;
-            for (std::size_t k = q < 2 ? 0 : q - 2; k < std::min(q + 3, taken.size()); ++k)
-                taken[k] = true;
-            // The line through them, as seen from above.
-            const double middle_m = low + cell_m * (static_cast<double>(q) + 1);
-            std::vector<Vec3> on;
-            Vec3 sum{};
-            for (const std::uint32_t n : facing) {
-                if (std::abs(dot(mean, points.at(n)) - middle_m) > 1.5 * cell_m) continue;
-                on.push_back(points.at(n));
-                sum = plus(sum, on.back());
-            }
-            const Vec3 centre = along({}, 1.0 / static_cast<double>(on.size()), sum);
-            double xx = 0, xy = 0, yy = 0;
-            for (const Vec3& p : on) {
-                const Vec3 d = minus(p, centre);
-                xx += d[0] * d[0], xy += d[0] * d[1], yy += d[1] * d[1];
-            }
-            const double turn = std::atan2(2 * xy, xx - yy) / 2;
-            Vec3 out_way{-std::sin(turn), std::cos(turn), 0};
-            if (dot(out_way, mean) < 0) out_way = opposite(out_way);
-            if (dot(out_way, mean) < std::cos(8 * std::numbers::pi / 180)) continue;
-            std::vector<double> at;
-            for (const Vec3& p : on) at.push_back(dot(out_way, p));
-            const auto half = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
-            std::nth_element(at.begin(), half, at.end());
-            out.push_back({out_way, *half});
-        }
+        if (!facing.empty()) add_planes(points, facing, unit(sum), out);
     }
     return out;
 }
@@ -355,7 +372,7 @@ class Look {
             low_z = std::min(low_z, p[2]), high_z = std::max(high_z, p[2]);
             low_x = std::min(low_x, p[0]), high_x = std::max(high_x, p[0]);
         }
-        constexpr double most_m = 30;  // of a map
+        constexpr double most_m = 10;  // of what is furniture
         if (!(high_u - low_u < most_m && high_z - low_z < most_m)) return {};
         FaceMaps maps(static_cast<int>((high_u - low_u) / cell_m) + 1 + 2 * margin,
                       static_cast<int>((high_z - low_z) / cell_m) + 1 + 2 * margin);
@@ -421,7 +438,8 @@ class Look {
             const std::optional<Grip> grip = grip_of(each, whole, within, maps);
             if (grip && edge_m(found, *grip) >= least_edge_m) found.grips.push_back(*grip);
         }
-        if (found.grips.empty()) return;
+        constexpr std::size_t most_grips = 40;
+        if (found.grips.empty() || found.grips.size() > most_grips) return;
         found.deep_m = deep_m(found);
         if (found.deep_m < least_deep_m) return;
         std::ranges::stable_sort(found.grips, {}, &Grip::u);

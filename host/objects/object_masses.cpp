@@ -89,8 +89,11 @@ ObjectMasses weigh_objects(const SolidScene& solids, ObjectOf object_of,
     for (std::size_t o = 0; o < objects; ++o) {
         const ThingKind* kind =
             options.materials ? named_kind(*options.materials, known[o].name) : nullptr;
-        out.objects[o].friction = known[o].friction.value_or(
+        physics::Friction& friction = out.objects[o].friction;
+        friction.coefficient = known[o].friction.value_or(
             kind && kind->friction > 0 ? kind->friction : options.friction);
+        if (!known[o].friction)
+            friction.error = physics::unknown_friction_share * friction.coefficient;
     }
     for (std::size_t o = 0; options.materials && o < objects; ++o) {
         if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) continue;

@@ -43,7 +43,7 @@ struct ObjectMasses {
         physics::Symmetric inertia{};       // about its centre of mass
         double alike_error_kg = 0;          // see physics/repeated_objects.h
         physics::Drawers drawers;           // grid frame
-        double friction = 0;                // coefficient, on what it stands on
+        physics::Friction friction;         // on what it stands on
     };
     Table<PrimitiveId, double> density_kg_m3;        // mass over volume
     Table<PrimitiveId, physics::Symmetric> moments;  // physics::second_moments

@@ -195,9 +195,8 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
 }
 
 physics::Toppling toppling_of(const Body& object, const physics::Stability& tipping) {
-    return {object.candidate, {object.inertia, object.highest_m},
-            tipping,          safety::directions(),
-            object.sliding,   object.friction};
+    return {object.candidate, {object.inertia, object.highest_m}, tipping, safety::directions(),
+            object.sliding,   object.friction.coefficient};
 }
 
 Table<PrimitiveId, bool> fixed_primitives(ObjectOf object_of, TableView<ObjectId, Body> objects) {
@@ -246,7 +245,7 @@ void find_barriers(device::Device& device, const physics::PartHulls& parts,
                            o.candidate.support_height_m, o.rest != graph::RestKind::seen});
     }
     std::vector<double> friction;
-    for (const Body& o : objects) friction.push_back(o.friction);
+    for (const Body& o : objects) friction.push_back(o.friction.coefficient);
     std::vector<physics::SlideResult> sliding =
         physics::slide_all(cells, object_of, bodies, friction,
                            {.places = landscapes,

@@ -44,7 +44,7 @@ struct Body {
     MassModel mass_model = MassModel::solid;
     physics::Symmetric inertia{};
     physics::Drawers drawers;
-    double friction = 0;            // coefficient, on what it stands on
+    physics::Friction friction;     // on what it stands on
     physics::BodyError body_error;  // at its density, as all that follows from it
     double density_error_kg = 0;    // of its mass, by what its density may be
     double mass_error_kg() const { return std::hypot(body_error.mass_kg, density_error_kg); }

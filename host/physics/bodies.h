@@ -15,6 +15,15 @@
 // Everything in this folder works in the grid frame of SolidCells.
 namespace topple::physics {
 
+// Coulomb's coefficient of a thing on what it stands on, and one standard error of it.
+struct Friction {
+    double coefficient = 0, error = 0;
+    double error_share() const { return coefficient > 0 ? error / coefficient : 0; }
+};
+// Of a coefficient that nobody told of that thing, as a share of it. Set by hand: handbooks have
+// most pairs of dry household surfaces between 0.2 and 0.6.
+inline constexpr double unknown_friction_share = 1.0 / 3;
+
 // Mass properties of one primitive or of a group of them.
 struct MassProperties {
     std::uint64_t voxels = 0;  // that are it for the most part

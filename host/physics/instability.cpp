@@ -60,12 +60,13 @@ double tipping_barrier_J(const Candidate& body, double margin_m) {
 }
 
 double barrier_error_J(const Candidate& body, const BodyError& known, const Stability& tip,
-                       const Instability& how, double margin_error_m, double friction) {
+                       const Instability& how, double margin_error_m, const Friction& friction) {
     const double weight = body.body.mass_kg * gravity;
     if (!(weight > 0)) return 0;
     const double of_mass = how.barrier_J * known.mass_kg / body.body.mass_kg;
     if (how.mode == Instability::Mode::slide)
-        return std::hypot(friction * weight * margin_error_m, of_mass);
+        return std::hypot(friction.coefficient * weight * margin_error_m, of_mass,
+                          how.barrier_J * friction.error_share());
     if (!how.edge || !(tip.margin_m > 0)) return std::hypot(weight * margin_error_m, of_mass);
     const auto& [a, b] = *how.edge;
     const double beside =

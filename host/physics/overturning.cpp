@@ -26,7 +26,7 @@ TippingPush tipping_push(const MassProperties& body, const BodyError& known, dou
 
 Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
-                        double friction, double floor_m) {
+                        const Friction& friction, double floor_m) {
     const MassProperties& body = candidate.body;
     const double weight = body.mass_kg * gravity;
     const double height = body.center[2] - candidate.support_height_m;
@@ -50,8 +50,10 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
     out.hand_height_m = hand > 0 ? std::min(hand, arm) : height;
     out.hand_push_N = out.push_N * arm / out.hand_height_m;
     out.hand_push_error_N = out.push_error_N * arm / out.hand_height_m;
-    out.slide_N = friction * weight;
-    out.shake_g = std::min(beside / height, friction);
+    out.slide_N = friction.coefficient * weight;
+    out.slide_error_N =
+        std::hypot(friction.error * weight, friction.coefficient * gravity * known.mass_kg);
+    out.shake_g = std::min(beside / height, friction.coefficient);
     return out;
 }
 

@@ -22,7 +22,7 @@ inline constexpr double foot_off_share = 0.4;
 // mass is not above the support. Grid frame.
 Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
-                        double friction, double floor_m);
+                        const Friction& friction, double floor_m);
 
 // Steady level push, newtons, `arm_m` above its support, at which a body begins to turn over an
 // edge that lies `ahead_m` before its centre of mass along the push: M g ahead / arm. `aside`: the

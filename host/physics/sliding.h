@@ -127,8 +127,8 @@ double tipping_barrier_J(const Candidate& body, double margin_m);
 //     tipping over an edge at m > 0 from the centre of mass, h above it, of
 //         M g (sqrt(h^2 + m^2) - h); but where m is small, of what is to be expected of it at 0;
 //         without an edge, M g margin_error_m;
-//     sliding: friction M g margin_error_m.
+//     sliding by a way l: coefficient M g margin_error_m, and M g l times the coefficient's error.
 double barrier_error_J(const Candidate& body, const BodyError& known, const Stability& tip,
-                       const Instability& how, double margin_error_m, double friction);
+                       const Instability& how, double margin_error_m, const Friction& friction);
 
 }  // namespace topple::physics

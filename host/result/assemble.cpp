@@ -101,7 +101,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.joint_probability = from.weakest.probability;
         to.weakest_joint = {from.weakest.a, from.weakest.b};
         to.mass_model = to_string(from.mass_model);
-        if (from.friction != scene.friction) to.friction = from.friction;
+        if (from.friction.coefficient != scene.friction) to.friction = from.friction.coefficient;
         to.center_of_mass_m = to_input.place(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
         to.mass_error_kg = from.mass_error_kg();

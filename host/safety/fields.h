@@ -42,11 +42,12 @@ struct RiskObject {
     std::vector<InstabilityStep> curve;  // S(W)
     // S(W) by direction and height; null: the curve, whatever the way.
     std::shared_ptr<const physics::Toppling> toppling;
-    double barrier_error_J = 0;  // one standard error
-    bool slides = false;         // rather than that it tips
-    physics::Drawers drawers;    // that people may pull out
-    double friction = 0.3;       // coefficient, on what it stands on
-    double floor_shakes = 1;     // in earthquakes, so many times as strongly as the ground floor
+    double barrier_error_J = 0;       // one standard error
+    bool slides = false;              // rather than that it tips
+    physics::Drawers drawers;         // that people may pull out
+    double friction = 0.3;            // coefficient, on what it stands on
+    double friction_error_share = 0;  // one standard error of that, as a share of it
+    double floor_shakes = 1;  // in earthquakes, so many times as strongly as the ground floor
     // Not as measured, but as at an end of that error (risk_error.h): the border of its support
     // lies so much further out, and the roots of its barriers are larger by so much.
     double border_shift_m = 0, root_shift = 0;

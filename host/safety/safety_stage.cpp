@@ -51,7 +51,8 @@ std::vector<safety::RiskObject> risk_objects(std::span<const Body> objects) {
         r.barrier_error_J = o.seen_error_J;
         r.floor_shakes = o.floor_shakes;
         r.drawers = o.drawers;
-        r.friction = o.friction;
+        r.friction = o.friction.coefficient;
+        r.friction_error_share = o.friction.error_share();
         r.slides = o.instability.mode == physics::Instability::Mode::slide;
         r.base_m = o.candidate.support_height_m;
         r.center = o.candidate.body.center;

@@ -30,7 +30,7 @@ def true_fronts(truth, scene):
     for thing in truth['objects']:
         for front in thing.get('fronts', []):
             cosine, sine = np.cos(front['yaw']), np.sin(front['yaw'])
-            yield {'thing': thing['name'], 'opens': front['kind'], 'name': front['name'], 'middle': place(front['center']),
+            yield {'thing': thing['name'], 'opens': front['kind'], 'handle': front['handle'], 'name': front['name'], 'middle': place(front['center']),
                    'across': turn @ [cosine, sine, 0], 'out': turn @ [-sine, cosine, 0], 'sides': (front['size'][0], front['size'][2]),
                    'axis': turn @ front['axis'], 'at': place(front['at']) if 'at' in front else None}
 
@@ -57,21 +57,21 @@ def opens_alike(true, found):
 
 
 def judge(truth, scene, fronts, name, verbose):
-    true, left, found, right = list(true_fronts(truth, scene)), list(fronts), 0, 0
+    true, left, found, right, with_handle = list(true_fronts(truth, scene)), list(fronts), 0, 0, 0
     for each in true:
         best = max(left, key=lambda f: overlap(each, f), default=None)
         hit = best is not None and overlap(each, best) >= LEAST_OVERLAP
         alike = hit and opens_alike(each, best)
         if hit:
             left.remove(best)
-        found, right = found + hit, right + alike
+        found, right, with_handle = found + hit, right + alike, with_handle + each['handle']
         if verbose:
-            print(f"  {name} {each['thing']} {each['name']}: {'right' if alike else 'opens otherwise' if hit else 'not found'}")
+            print(f"  {name} {each['thing']} {each['name']}{'' if each['handle'] else ' without a handle'}: {'right' if alike else 'opens otherwise' if hit else 'not found'}")
     if verbose:
         for f in left:
             print(f"  {name} none: object {f['object']} {f['opens']} {f['wide_m']:.2f} x {f['high_m']:.2f} at {np.round(f['middle_m'], 2)} "
                   f"P {f['probability']:.2f}")
-    return np.array([len(true), len(fronts), found, right])
+    return np.array([len(true), len(fronts), found, right, with_handle])
 
 
 def main():
@@ -85,12 +85,12 @@ def main():
     os.makedirs(a.work, exist_ok=True)
     first, last = map(int, a.seeds.split('-'))
     rooms = [(kind, seed) for kind in a.kinds.split(',') for seed in range(first, last + 1)]
-    total = np.zeros(4, int)
+    total = np.zeros(5, int)
     with ThreadPoolExecutor(2) as pool:
         for (kind, seed), made in zip(rooms, pool.map(lambda room: export(a.programs, a.work, *room), rooms)):
             total += judge(*made, f'{kind}{seed}', a.verbose)
-    true, said, found, right = total
-    print(f'{len(rooms)} rooms: {true} doors and drawers, {said} in exports; found {found / max(1, true):.2f}, '
+    true, said, found, right, with_handle = total
+    print(f'{len(rooms)} rooms: {true} doors and drawers, {with_handle} with handles, {said} in exports; found {found / max(1, true):.2f}, '
           f'found and open alike {right / max(1, true):.2f}, precision {right / max(1, said):.2f}')
 
 

@@ -125,8 +125,8 @@ void check_object(const Object& o, std::size_t objects, double voxel_m) {
            "only a part of what overturns an object is known");
     if (!std::isnan(tips.tilt_deg)) {
         expect(tips.tilt_deg >= 0 && tips.tilt_deg <= 90, "a tilt is out of 0 to 90 degrees");
-        for (const double v :
-             {tips.tilt_error_deg, tips.push_N, tips.push_error_N, tips.slide_N, tips.shake_g})
+        for (const double v : {tips.tilt_error_deg, tips.push_N, tips.push_error_N, tips.slide_N,
+                               tips.slide_error_N, tips.shake_g})
             expect_amount(v, "what overturns an object");
     }
     const Fragility& breaks = o.fragility;

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Bags of ROS: depth images with tf, and clouds, from what rosbags and mcap-ros2-support write."""
 import concurrent.futures
+import io
+import json
 import struct
 import time
 
@@ -138,6 +140,45 @@ def test_bags_are_played_at_their_pace(walk, tmp_path):
                                      (tmp_path / 'missing', tmp_path / 'a', 1, 'is not there')):
         with pytest.raises(topple.Error, match=words):
             topple.formats.play(source, out, rate=rate)
+
+
+def played_messages(bag, **options):
+    """As `topple live -` reads them: each message, and what is left after its line up to the next."""
+    stream = io.BytesIO()
+    topple.formats.play(bag, stream, rate=1000, **options)
+    stream.seek(0)
+    pixels = 0
+    while line := stream.readline():
+        message = json.loads(line)
+        count = message.get('count', pixels)
+        pixels = message['intrinsics']['width'] * message['intrinsics']['height'] if 'intrinsics' in message else pixels
+        each = {'frame': 2, 'points': 12}.get(message.get('add'), 0)
+        yield message, stream.read(each * count), stream.read(3 * count if message.get('rgb') else 0)
+
+
+def test_bags_are_played_as_messages(walk, points, tmp_path):
+    """Depth frames as a folder has them; clouds of a bag that has none, or that are asked for, in their sensor's axes."""
+    kind = 'sensor_msgs/msg/PointCloud2'
+    turn = np.array([[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 0.5], [0, 0, 0, 1.0]])
+    seen = (points - turn[:3, 3]) @ turn[:3, :3]
+    clouds = [('/tf_static', 'tf2_msgs/msg/TFMessage', 0, tf((0, 'map', 'lidar', turn))),
+              ('/points', kind, SECOND, point_cloud(SECOND, seen, 'lidar', colours_of(points))),
+              ('/points', kind, 2 * SECOND, point_cloud(2 * SECOND, seen[::2], 'lidar', colours_of(points)[::2]))]
+    depth = depth_messages(walk[:3], '16UC1')
+    first, *frames = played_messages(write_bag(tmp_path / 'frames', 'mcap', depth))
+    assert first[0]['intrinsics']['fx'] == CAMERA.fx and len(frames) == 3
+    for (message, readings, _), (pose, metres) in zip(frames, walk):
+        assert np.allclose(message['pose'], pose.ravel(), atol=1e-9)
+        assert np.array_equal(np.frombuffer(readings, '<u2').reshape(metres.shape), np.round(1000 * metres))
+    for bag, options in ((write_bag(tmp_path / 'clouds', 'sqlite3', clouds), {}), (write_bag(tmp_path / 'both', 'mcap', depth + clouds), {'topic': '/points'})):
+        sweeps = list(played_messages(bag, **options))
+        assert [message['count'] for message, *_ in sweeps] == [len(points), len(points[::2])]
+        message, places, colours = sweeps[0]
+        assert np.array_equal(np.frombuffer(places, '<f4').reshape(-1, 3), seen.astype(np.float32))
+        assert np.array_equal(np.frombuffer(colours, np.uint8).reshape(-1, 3), colours_of(points)) and np.allclose(message['pose'], turn.ravel())
+    with pytest.raises(topple.Error, match='can be played to "-"'):
+        topple.formats.play(tmp_path / 'clouds', tmp_path / 'folder')
+    assert not (tmp_path / 'folder').exists()
 
 
 def picture(time, pixels, frame, encoding='bgr8'):

@@ -158,6 +158,9 @@ struct Overturning {
     double hand_push_N = none, hand_push_error_N = none, hand_height_m = none;
     // Gust that is as likely to tip it as not, from where it takes least, if it does not slide.
     double gust_m_s = none, gust_error_m_s = none;
+    // One standard error of slide_N: of the mass, and of a coefficient of friction that nobody
+    // told.
+    double slide_error_N = none;
 };
 
 // How likely an object is to fall in an earthquake, over how strong that is: counted over records

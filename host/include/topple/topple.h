@@ -320,7 +320,8 @@ typedef struct topple_object {
      * primitives; 1 and -1 where it has one part. Below 0.6 it is about as likely two things */
     double joint_probability;
     int32_t weakest_joint[2];
-    double friction; /* coefficient, by its name or a correction; NaN: that of the scene */
+    double friction;      /* coefficient, by its name or a correction; NaN: that of the scene */
+    double slide_error_N; /* one standard error of slide_N */
 } topple_object;
 typedef struct topple_contact {
     size_t size;

@@ -55,8 +55,20 @@ Vec3 rounded(const Vec3& p) {
     return {rounded(p[0]), rounded(p[1]), rounded(p[2])};
 }
 
-// Its doors and drawers: middle and sides, the axis (unit; the way that drawers come out), and a
-// point that a hinge's axis goes through.
+// Whether a front has a bar or a knob.
+bool has_handle(const World& world, const Part& front) {
+    const auto [across, out, up] = front.axes();
+    return std::ranges::any_of(world.parts, [&](const Part& p) {
+        if (p.object != front.object || (p.name != "handle" && p.name != "knob")) return false;
+        const Vec3 off = minus(p.center, front.center);
+        return std::abs(dot(off, across)) < front.size[0] / 2 &&
+               std::abs(dot(off, up)) < front.size[2] / 2 && dot(off, out) > 0 &&
+               dot(off, out) < 0.1;
+    });
+}
+
+// Its doors and drawers: middle and sides, whether they have handles, the axis (unit; the way that
+// drawers come out), and a point that a hinge's axis goes through.
 nlohmann::json fronts_of(const World& world, std::int32_t object) {
     nlohmann::json list = nlohmann::json::array();
     for (const Part& p : world.parts) {
@@ -68,6 +80,7 @@ nlohmann::json fronts_of(const World& world, std::int32_t object) {
                              {"center", rounded(p.center)},
                              {"size", rounded(p.size)},
                              {"yaw", rounded(p.yaw)},
+                             {"handle", has_handle(world, p)},
                              {"kind", slides ? "slide" : "hinge"},
                              {"axis", rounded(slides  ? out
                                               : below ? across

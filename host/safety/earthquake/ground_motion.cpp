@@ -160,6 +160,7 @@ ShakenObject shaken_object(const RiskObject& object, const MassSpread& stance,
     out.floor_shakes = object.floor_shakes;
     out.held = object.mass_kg > 0;
     out.base_error_share = object.base_error_share;
+    out.friction_error_share = object.friction_error_share;
     for (std::size_t p = 0; p < 2; ++p) {
         out.body[p] = profile(object, stance, columns, out.way[p][0], out.way[p][1]);
         out.body[p].friction = object.friction;
@@ -248,10 +249,10 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
         f = fragility_of(counted.peaks);
         f.firm_pga_g = f.pga_g;
         if (std::isfinite(f.pga_dispersion)) {
-            // What slides does not go with b / h.
+            // What slides goes with its friction, not with b / h.
             const double error = slenderness(objects[o]) < objects[o].body[0].friction
                                      ? objects[o].base_error_share
-                                     : 0;
+                                     : objects[o].friction_error_share;
             const auto with_error = [&](double dispersion) {
                 return std::min(most_dispersion, std::hypot(dispersion, error));
             };

@@ -30,8 +30,9 @@ std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale);
 struct ShakenObject {
     std::array<std::array<double, 2>, 2> way{};  // unit, which is ahead
     std::array<Profile, 2> body{};
-    bool held = false;            // its centre is above its support, not beyond the end of it
-    double base_error_share = 0;  // of b / h, by what is not known of the object
+    bool held = false;  // its centre is above its support, not beyond the end of it
+    // Of b / h, by what is not known of the object, and of its friction.
+    double base_error_share = 0, friction_error_share = 0;
     // Whether what overturns in a plane ahead, or behind, comes to rest lower there: it does not
     // fall where it only comes to lean on a wall, or lies as high as it stood.
     std::array<std::array<bool, 2>, 2> lower{{{true, true}, {true, true}}};

@@ -226,7 +226,7 @@ Stability tipping_of(const Candidate& candidate) {
 TEST(Overturning, ABookcaseAsStaticsHasIt) {
     const Candidate candidate = bookcase();
     const Overturning o =
-        overturning(candidate, {}, tipping_of(candidate), floor_m + height, 0, 0.3, floor_m);
+        overturning(candidate, {}, tipping_of(candidate), floor_m + height, 0, {0.3, 0}, floor_m);
     EXPECT_NEAR(o.tilt_deg, std::atan(depth / height) * degrees, 1e-3);
     EXPECT_NEAR(std::abs(o.direction[1]), 1, 1e-6);
     EXPECT_NEAR(o.push_N, mass * gravity * (depth / 2) / height, 1e-2);
@@ -234,18 +234,18 @@ TEST(Overturning, ABookcaseAsStaticsHasIt) {
     EXPECT_NEAR(o.shake_g, depth / height, 1e-5);
     EXPECT_NEAR(o.push_error_N, foot_off_share * o.push_N, 1e-6);
     // On a smooth floor it slides before it rocks.
-    EXPECT_NEAR(overturning(candidate, {}, tipping_of(candidate), 2, 0, 0.1, floor_m).shake_g, 0.1,
-                1e-9);
+    EXPECT_NEAR(overturning(candidate, {}, tipping_of(candidate), 2, 0, {0.1, 0}, floor_m).shake_g,
+                0.1, 1e-9);
 }
 
 TEST(Overturning, ErrorsAreThoseOfBorderHeightAndMass) {
     const double border = 0.008, high = 0.05, heavy = 2;
     const Candidate candidate = bookcase();
     const Overturning o = overturning(candidate, {heavy, {0, 0, high}}, tipping_of(candidate),
-                                      floor_m + height, border, 0.3, floor_m);
+                                      floor_m + height, border, {0.3, 0.1}, floor_m);
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
-    double tilt = 0, tilt2 = 0, push = 0, push2 = 0;
+    double tilt = 0, tilt2 = 0, push = 0, push2 = 0, slide = 0, slide2 = 0;
     constexpr int draws = 200000;
     for (int n = 0; n < draws; ++n) {
         const double b =
@@ -257,9 +257,13 @@ TEST(Overturning, ErrorsAreThoseOfBorderHeightAndMass) {
         tilt2 += t * t / draws;
         push += p / draws;
         push2 += p * p / draws;
+        const double s = (0.3 + 0.1 * normal(random)) * m * gravity;
+        slide += s / draws;
+        slide2 += s * s / draws;
     }
     EXPECT_NEAR(o.tilt_error_deg, std::sqrt(tilt2 - tilt * tilt), 0.06 * o.tilt_error_deg);
     EXPECT_NEAR(o.push_error_N, std::sqrt(push2 - push * push), 0.03 * o.push_error_N);
+    EXPECT_NEAR(o.slide_error_N, std::sqrt(slide2 - slide * slide), 0.03 * o.slide_error_N);
 }
 
 // A metre above the floor, at the top of what is lower, and at the middle of what is out of reach.
@@ -267,7 +271,7 @@ TEST(Overturning, AHandReachesAMetreUp) {
     const Candidate candidate = bookcase();
     const Stability tipping = tipping_of(candidate);
     const auto pushed = [&](double people_on_m) {
-        return overturning(candidate, {}, tipping, floor_m + height, 0.01, 0.3, people_on_m);
+        return overturning(candidate, {}, tipping, floor_m + height, 0.01, {0.3, 0}, people_on_m);
     };
     const double moment = mass * gravity * depth / 2;
     const Overturning o = pushed(floor_m);
@@ -283,7 +287,8 @@ TEST(Overturning, AHandReachesAMetreUp) {
 TEST(Overturning, WhatFallsByItselfTakesNothing) {
     Candidate candidate = bookcase();
     for (auto& corner : candidate.support_polygon) corner[1] += depth;
-    const Overturning o = overturning(candidate, {}, tipping_of(candidate), 2, 0, 0.3, floor_m);
+    const Overturning o =
+        overturning(candidate, {}, tipping_of(candidate), 2, 0, {0.3, 0}, floor_m);
     EXPECT_EQ(o.tilt_deg, 0);
     EXPECT_EQ(o.push_N, 0);
     EXPECT_EQ(o.shake_g, 0);
@@ -293,10 +298,10 @@ TEST(Overturning, WhatHangsOrIsHeldByNothingHasNone) {
     Candidate candidate = bookcase();
     const Stability tipping = tipping_of(candidate);
     candidate.support_height_m = 3;
-    EXPECT_TRUE(std::isnan(overturning(candidate, {}, tipping, 2, 0, 0.3, floor_m).tilt_deg));
+    EXPECT_TRUE(std::isnan(overturning(candidate, {}, tipping, 2, 0, {0.3, 0}, floor_m).tilt_deg));
     candidate = bookcase();
     candidate.support_polygon.clear();
-    EXPECT_TRUE(std::isnan(overturning(candidate, {}, tipping, 2, 0, 0.3, floor_m).push_N));
+    EXPECT_TRUE(std::isnan(overturning(candidate, {}, tipping, 2, 0, {0.3, 0}, floor_m).push_N));
 }
 
 }  // namespace

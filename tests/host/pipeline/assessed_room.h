@@ -53,7 +53,7 @@ struct AssessedRoom {
             object.candidate =
                 graph::candidate_of(contacts, bodies, around.is_floor_primitive, members);
             object.inertia = inertia[o];
-            object.friction = friction;
+            object.friction.coefficient = friction;
             objects.push_back(std::move(object));
         }
         stage.objects = objects;

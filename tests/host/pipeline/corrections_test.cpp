@@ -149,6 +149,13 @@ TEST_F(CorrectedRoom, RubsAsSomebodyKnows) {
     EXPECT_TRUE(std::isnan(object_at(icy, on_crate).friction));
     EXPECT_NEAR(box.overturning.slide_N, 0.1 * usual.overturning.slide_N, 1e-9);
     EXPECT_EQ(box.mass_kg, usual.mass_kg);
+    // Of what nobody told it is known to a third.
+    const auto told = [](const Object& o) {
+        return o.overturning.slide_N * o.mass_error_kg / o.mass_kg;
+    };
+    EXPECT_NEAR(box.overturning.slide_error_N, told(box), 1e-9);
+    EXPECT_NEAR(usual.overturning.slide_error_N,
+                std::hypot(told(usual), usual.overturning.slide_N / 3), 1e-9);
     EXPECT_EQ(box.mode, "slide");
     EXPECT_LT(box.barrier_J, usual.barrier_J);
     Materials kinds = household_materials();

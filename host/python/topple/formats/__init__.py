@@ -128,10 +128,13 @@ def convert(path, out, options=Options()):
 
 
 def play(path, out, rate=1.0, topic=None):
-    """Plays the depth frames of a bag of ROS at their pace, `rate` times as fast, into a folder that `topple live` may follow meanwhile.
-    Reads in this process, without limits of memory and time. Returns the notes. Raises topple.Error; out must not be there yet."""
-    path, out = pathlib.Path(path), pathlib.Path(out)
-    _check_new(out)
+    """Plays the depth frames of a bag of ROS at their pace, `rate` times as fast, into a folder that `topple live` may follow meanwhile,
+    and must not be there yet; or, where `out` is a file opened to write bytes, as the messages that `topple live -` takes: these may be
+    of a bag's clouds, too. Reads in this process, without limits of memory and time. Returns the notes. Raises topple.Error."""
+    path = pathlib.Path(path)
+    if not hasattr(out, 'write'):
+        out = pathlib.Path(out)
+        _check_new(out)
     if not (isinstance(rate, (int, float)) and 0 < rate < float('inf')):
         raise wrong(path, f'rate {rate}: expected a number above 0', 'usage')
     if format_of(path) is not ros_bag:

@@ -22,7 +22,7 @@ def reading(path, what):
     """Whatever a library, or a value that isn't there, raises on a damaged file becomes an Error that names it."""
     try:
         yield
-    except (Error, KeyboardInterrupt):
+    except (Error, KeyboardInterrupt, BrokenPipeError):  # the pipe is of what is written
         raise
     except MemoryError:
         raise wrong(path, 'does not fit into memory; thin it, or check that it is not damaged') from None

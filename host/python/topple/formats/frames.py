@@ -53,28 +53,27 @@ def as_seen_by(camera, depth, other):
     return np.where(inside, seen, 0)
 
 
-class FrameFolder:
-    """Writes the folder frame by frame, so that `topple live` may follow it; all frames get the first one's intrinsics."""
+class Frames:
+    """What becomes of frames, one by one; all get the first one's intrinsics. Of those below it one says where they go."""
 
-    def __init__(self, folder, source, depth_scale=1000.0):
+    def __init__(self, source, depth_scale=1000.0):
         """source: the file to name in errors; depth_scale: metres = stored value / depth_scale."""
-        self.folder, self.source, self.depth_scale = folder, source, depth_scale
+        self.source, self.depth_scale = source, depth_scale
         self.camera = None
         self.poses = []
         self.resampled = 0
-        (folder / 'depth').mkdir(parents=True)
 
     def add(self, camera, depth_m, pose, colour=None):
         """depth_m: (height, width) along the camera's axis in metres; 0, NaN: no reading. pose: 4 x 4, camera to world, the camera's
-        x right, y down, z forward, metres. colour: bytes of a JPEG or PNG of what the camera saw."""
+        x right, y down, z forward, metres. colour: of what the camera saw, (height, width, 3) uint8 sRGB, or of a folder the bytes of a
+        JPEG or PNG."""
         if depth_m.shape != (camera.height, camera.width):
             raise wrong(self.source, f'frame {len(self.poses)} has {depth_m.shape[1]} x {depth_m.shape[0]} pixels of depth, '
                                      f'its camera {camera.width} x {camera.height}')
         if self.camera is None:
             self._check(camera)
             self.camera = camera
-            values = {**dataclasses.asdict(camera), 'depth_scale': self.depth_scale}
-            (self.folder / 'intrinsics.json').write_text(json.dumps(values))
+            self._begin({**dataclasses.asdict(camera), 'depth_scale': self.depth_scale})
         if camera != self.camera:
             self.resampled += 1
             colour = None  # they would have intrinsics of their own
@@ -82,16 +81,9 @@ class FrameFolder:
             raise wrong(self.source, f'the pose of frame {len(self.poses)} is not finite')
         depth_m = np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, 0)
         stored = np.round(as_seen_by(camera, depth_m, self.camera) * self.depth_scale)
-        name = f'{len(self.poses):06d}'
         # What 16 bits can't hold is no reading, as it is with sensors.
-        (self.folder / 'depth' / f'{name}.png').write_bytes(png(np.where(stored > 65535, 0, stored).astype(np.uint16)))
-        if colour is not None:
-            (self.folder / 'color').mkdir(exist_ok=True)
-            ending = 'png' if colour.startswith(b'\x89PNG') else 'jpg'
-            (self.folder / 'color' / f'{name}.{ending}').write_bytes(colour)
+        self._put(np.where(stored > 65535, 0, stored).astype(np.uint16), np.asarray(pose, float), colour)
         self.poses.append(pose)
-        with open(self.folder / 'trajectory.txt', 'a', encoding='ascii') as file:
-            file.write(' '.join(repr(float(v)) for v in np.asarray(pose)[:3].ravel()) + '\n')
 
     def _check(self, camera):
         if not (camera.width > 0 and camera.height > 0 and np.isfinite([camera.fx, camera.fy, camera.cx, camera.cy]).all()
@@ -107,6 +99,53 @@ class FrameFolder:
             notes.append(f'{self.resampled} of {len(self.poses)} depth images have intrinsics of their own, and were resampled '
                          "to the first one's.")
         return notes
+
+
+class FrameFolder(Frames):
+    """Writes a folder, so that `topple live` may follow it."""
+
+    def __init__(self, folder, source, depth_scale=1000.0):
+        super().__init__(source, depth_scale)
+        self.folder = folder
+        (folder / 'depth').mkdir(parents=True)
+
+    def _begin(self, intrinsics):
+        (self.folder / 'intrinsics.json').write_text(json.dumps(intrinsics))
+
+    def _put(self, depth, pose, colour):
+        name = f'{len(self.poses):06d}'
+        (self.folder / 'depth' / f'{name}.png').write_bytes(png(depth))
+        if colour is not None:
+            (self.folder / 'color').mkdir(exist_ok=True)
+            colour = colour if isinstance(colour, bytes) else png(colour)
+            ending = 'png' if colour.startswith(b'\x89PNG') else 'jpg'
+            (self.folder / 'color' / f'{name}.{ending}').write_bytes(colour)
+        with open(self.folder / 'trajectory.txt', 'a', encoding='ascii') as file:
+            file.write(' '.join(repr(float(v)) for v in pose[:3].ravel()) + '\n')
+
+
+class Messages(Frames):
+    """Writes the messages that `topple live -` takes, of frames or of sweeps of points."""
+
+    def __init__(self, file, source, depth_scale=1000.0):
+        super().__init__(source, depth_scale)
+        self.file = file
+
+    def add_points(self, points, pose, colours=None):
+        """points: (N, 3) in the sensor's axes, metres; pose: 4 x 4, sensor to world; colours: (N, 3) uint8 sRGB."""
+        self._say({'add': 'points', 'count': len(points), 'pose': np.ravel(pose).tolist(), 'rgb': colours is not None},
+                  np.asarray(points, '<f4'), colours)
+
+    def _begin(self, intrinsics):
+        self._say({'intrinsics': intrinsics})
+
+    def _put(self, depth, pose, colour):
+        self._say({'add': 'frame', 'pose': pose.ravel().tolist(), 'rgb': colour is not None}, depth.astype('<u2'), colour)
+
+    def _say(self, message, *arrays):
+        readings = b''.join(np.ascontiguousarray(a).tobytes() for a in arrays if a is not None)
+        self.file.write(json.dumps(message).encode() + b'\n' + readings)
+        self.file.flush()
 
 
 # Phones' LiDAR reaches this far; what they tell of depth beyond is made up.

@@ -12,7 +12,7 @@ import numpy as np
 from . import images
 from .cloud import Cloud, kept, message_points
 from .errors import needs, reading, wrong
-from .frames import Camera, FrameFolder, png
+from .frames import Camera, FrameFolder, Messages
 from .limits import Budget
 from .ros_colour import ColourImages, is_colour
 from .scan_folder import ScanFolder
@@ -230,8 +230,8 @@ class _Moved:
         return True
 
 
-def _frames(bag, folder, topic, others, wait=None):
-    """wait(ns): is called before each image is looked at, with the time of its recording."""
+def _frames(bag, begin, topic, others, wait=None):
+    """begin(): the Frames, once there is a camera; wait(ns): is called before each image is looked at, with the time of its recording. Returns the notes."""
     transforms = _transforms(bag)
     first = next((message for _, message in bag.messages(topic)), None)
     if first is None:
@@ -245,7 +245,7 @@ def _frames(bag, folder, topic, others, wait=None):
         break
     if camera is None:
         raise wrong(bag.path, f'{info_topic} has no message')
-    frames, moved = FrameFolder(folder, bag.path), _Moved()
+    frames, moved = begin(), _Moved()
     seen = unplaced = coloured = 0
     for recorded, message in bag.between(topic):
         seen += 1
@@ -260,7 +260,7 @@ def _frames(bag, folder, topic, others, wait=None):
             own = camera.resized(depth.shape[1], depth.shape[0])
             colours = pictures and pictures.of(depth, own, frame, transforms, _time(message.header), recorded)
             coloured += colours is not None
-            frames.add(own, depth, pose, None if colours is None else png(colours))
+            frames.add(own, depth, pose, colours)
     if unplaced == seen:
         raise wrong(bag.path, f'{topic}: tf does not say where {frame} was when any of its {seen} images was taken')
     moves = f'those before which the camera had moved by {STEP_M * 100:.0f} cm or turned by {np.rad2deg(TURN_RAD):.0f} degrees'
@@ -275,7 +275,7 @@ def _frames(bag, folder, topic, others, wait=None):
         notes.append(f"{info_topic} tells of the lens' distortion, which is not corrected: surfaces are bent towards the images' corners.")
     if others:
         notes.append(f'Other topics with depth were left out: {", ".join(others)}.')
-    return folder, frames.finish(notes), None
+    return frames.finish(notes)
 
 
 def _thinned(points, *others):
@@ -326,14 +326,39 @@ def _cloud(bag, topic, others):
     return Cloud(points, colours if coloured else None, viewpoint, notes=notes)
 
 
-def play(path, folder, options, wait):
-    """Writes the bag's depth frames as convert() does, one by one: each after wait(ns) of its time of recording. Returns the notes."""
+def _sweeps(bag, messages, topic, wait):
+    """As _frames(), of clouds in their sensor's axes."""
+    transforms = _transforms(bag)
+    seen = taken = 0
+    for recorded, message in bag.between(topic):
+        wait(recorded)
+        seen += 1
+        pose = transforms.to_root(message.header.frame_id.lstrip('/'), _time(message.header))
+        if pose is None:
+            continue
+        with reading(bag.path, FORMAT):
+            points, colours = message_points(message, bag.path)
+        known = np.isfinite(points).all(axis=1)
+        messages.add_points(points[known], pose, None if colours is None else colours[known])
+        taken += 1
+    if taken == 0:
+        raise wrong(bag.path, f'{topic}: tf does not say where the sensor was when any of its {seen} clouds was taken')
+    return [f'{taken} of the {seen} clouds of {topic} were played' + ('.' if taken == seen else '; of the others tf does not say where the sensor was.')]
+
+
+def play(path, out, options, wait):
+    """Writes the bag's depth frames as convert() does, one by one: each after wait(ns) of its time of recording; or, where `out` is a
+    file of bytes, as messages, and the clouds of a bag that has no depth. Returns the notes."""
     with Bag(path, Budget(path, options)) as bag:
-        depth = _depth_topics(bag)
+        depth, clouds = _depth_topics(bag), bag.topics(CLOUD)
+        messages = Messages(out, path) if hasattr(out, 'write') else None
+        if messages and clouds and (options.topic in clouds or not depth):
+            return _sweeps(bag, messages, _most(clouds, options.topic, path, 'PointCloud2'), wait)
         if not depth:
-            raise wrong(path, 'has no depth image (16UC1, 32FC1, compressedDepth) that could be played')
+            raise wrong(path, 'has no depth image (16UC1, 32FC1, compressedDepth) that could be played' +
+                        (': its clouds can be played to "-", for topple live -' if clouds else ''))
         topic = _most(depth, options.topic, path, 'depth image')
-        return _frames(bag, folder, topic, sorted(set(depth) - {topic}), wait)[1]
+        return _frames(bag, lambda: messages or FrameFolder(out, path), topic, sorted(set(depth) - {topic}), wait)
 
 
 def convert(path, folder, options):
@@ -341,7 +366,7 @@ def convert(path, folder, options):
         depth, clouds = _depth_topics(bag), bag.topics(CLOUD)
         if depth and options.topic not in clouds:
             topic = _most(depth, options.topic, path, 'depth image')
-            return _frames(bag, folder, topic, sorted(set(depth) - {topic}))
+            return folder, _frames(bag, lambda: FrameFolder(folder, path), topic, sorted(set(depth) - {topic})), None
         if not clouds:
             kinds = sorted({c.msgtype for c in bag.connections})
             raise wrong(path, f'has no depth image (16UC1, 32FC1, compressedDepth) and no PointCloud2, but {", ".join(kinds)[:300] or "nothing"}')
