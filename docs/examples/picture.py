@@ -19,13 +19,16 @@ def main():
     options.add_argument('dir')
     options.add_argument('picture')
     options.add_argument('--parts', action='store_true')
-    options.add_argument('--open', action='store_true')
-    options.add_argument('--look', type=float, nargs=4)
+    options.add_argument('--open', action='store_true', help='doors and drawers half open')
+    options.add_argument('--look', type=float, nargs=4, metavar=('X', 'Y', 'Z', 'DISTANCE'), help='what to look at, and from how far, metres')
     options.add_argument('--seconds', type=float, default=0)
     options.add_argument('--azimuth', type=float, default=225)
     options.add_argument('--elevation', type=float, default=-55)
     options = options.parse_args()
-    model = mujoco.MjModel.from_xml_path(os.path.join(options.dir, 'scene.xml'))
+    scene = os.path.join(options.dir, 'scene.xml')
+    if not os.path.exists(scene):
+        sys.exit(f'picture.py: there is no {scene}; export with --mjcf {options.dir} first')
+    model = mujoco.MjModel.from_xml_path(scene)
     model.vis.global_.offwidth, model.vis.global_.offheight = WIDTH, HEIGHT
     if options.parts:
         model.geom_rgba[:, :3] = 0.3 + 0.6 * np.random.default_rng(2).random((model.ngeom, 3))

@@ -46,6 +46,9 @@ void print_export(const ExportSummary& summary) {
         "%.1f mm\n",
         static_cast<unsigned long long>(free), static_cast<unsigned long long>(parts),
         1e3 * summary.deepest_overlap_m, 1e3 * furthest_m);
+    if (!summary.fronts.empty())
+        print("%zu doors and drawers on joints; --no-joints leaves them out\n",
+              summary.fronts.size());
     for (const std::string& note : summary.notes) print("%s\n", note.c_str());
     if (!std::isfinite(summary.floor_m)) return;
     print("The floor lies at z = %.3f m", summary.floor_m);

@@ -109,6 +109,13 @@ std::vector<double> door_edges(const std::vector<Grip>& grips, double low, doubl
     return out;
 }
 
+// What looks like a front is none more often than grips and their places tell: of 77 generated
+// rooms those that were 50 to 80 % likely by these were right in one of three.
+double by_experience(double probability) {
+    constexpr double odds_share = 0.25;
+    return odds_share * probability / (odds_share * probability + 1 - probability);
+}
+
 // Flaps, as of ovens and dishwashers: high ones with a wide bar along the upper edge.
 bool opens_below(const Grip& grip, double wide_m, double low, double high) {
     constexpr double least_high_m = 0.4, least_share = 0.75, least_wide = 0.5;
@@ -138,6 +145,7 @@ void add_fronts(const GrippedFace& face, const ColumnFronts& column, std::vector
         if (front.opening == Opening::slide && column.grips.size() == 1 &&
             front.high_m > high_drawer_m)
             front.probability *= 0.5;
+        front.probability = by_experience(front.probability);
         front.out = face.out;
         front.across = face.across;
         front.colour = face.colour;

@@ -4,6 +4,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <numbers>
+#include <optional>
+#include <span>
 
 #include "core/vectors.h"
 #include "export/named_bodies.h"
@@ -34,21 +36,23 @@ double volume_m3(const Box& box) {
     return 8 * box.half_m[0] * box.half_m[1] * box.half_m[2];
 }
 
-// Boards that lie within what is solid behind the front. A drawer has a floor and three walls, too.
-std::vector<Box> boards_of(const Front& front, double deep_m) {
-    const double wide = front.wide_m - 2 * clear_m, high = front.high_m - 2 * clear_m;
-    std::vector<Box> out{box_of(front, place(front, 0, -board_m / 2, 0), {wide, board_m, high})};
-    if (front.opening != Opening::slide) return out;
+// A board, smaller by so much on all sides.
+Box board_of(const Front& front, double inset_m) {
+    return box_of(front, place(front, 0, -board_m / 2, 0),
+                  {front.wide_m - 2 * inset_m, board_m, front.high_m - 2 * inset_m});
+}
+
+// A drawer's floor and walls, of such a length behind its board.
+std::vector<Box> tray_of(const Front& front, double inset_m, double long_m) {
     constexpr double thin_m = 0.01, beside_m = 0.02, wall_share = 0.7;
-    const double inner = wide - 2 * beside_m, long_m = deep_m - board_m,
-                 middle = -board_m - long_m / 2;
-    const double floor = -high / 2 + beside_m, walls = wall_share * (high - beside_m);
-    out.push_back(box_of(front, place(front, 0, middle, floor), {inner, long_m, thin_m}));
-    const double wall_z = floor + thin_m / 2 + walls / 2;
+    const double high = front.high_m - 2 * inset_m, inner = front.wide_m - 2 * (inset_m + beside_m),
+                 middle = -board_m - long_m / 2, floor = -high / 2 + beside_m,
+                 walls = wall_share * (high - beside_m), wall_z = floor + thin_m / 2 + walls / 2;
+    std::vector<Box> out{box_of(front, place(front, 0, middle, floor), {inner, long_m, thin_m})};
     for (const double side : {-1.0, 1.0})
         out.push_back(box_of(front, place(front, side * (inner - thin_m) / 2, middle, wall_z),
                              {thin_m, long_m, walls}));
-    out.push_back(box_of(front, place(front, 0, -deep_m + thin_m / 2, wall_z),
+    out.push_back(box_of(front, place(front, 0, -board_m - long_m + thin_m / 2, wall_z),
                          {inner - 2 * thin_m, thin_m, walls}));
     return out;
 }
@@ -138,17 +142,47 @@ void add_axis(const Front& from, JointedFront& to, double deep_m) {
     }
 }
 
-// Whether a handle would lie in another body, which may be what was seen of it.
-bool is_free(const Box& grip, const std::vector<Body>& bodies, std::size_t own) {
-    const std::array<Vec3, 8> corners = grip.corners();
-    const std::optional<ConvexPart> part = hull_part(corners);
-    if (!part) return false;
-    for (std::size_t n = 0; n < bodies.size(); ++n) {
-        if (n == own) continue;
-        for (const ConvexPart& other : bodies[n].parts)
-            if (near(*part, other, 0) && overlap(*part, other)) return false;
+// Whether boxes lie in no other body: where a part of the furniture was cut away, another one's is.
+bool are_free(std::span<const Box> boxes, const std::vector<Body>& bodies, std::size_t own) {
+    return std::ranges::all_of(boxes, [&](const Box& box) {
+        const std::array<Vec3, 8> corners = box.corners();
+        const std::optional<ConvexPart> part = hull_part(corners);
+        if (!part) return false;
+        for (std::size_t n = 0; n < bodies.size(); ++n) {
+            if (n == own) continue;
+            for (const ConvexPart& other : bodies[n].parts)
+                if (near(*part, other, 0) && overlap(*part, other)) return false;
+        }
+        return true;
+    });
+}
+
+// The boards and the handle, as large as there is room for among the other bodies, and where that
+// is not within the furniture, right before it; none where there is none for the front's board.
+std::vector<Box> boxes_of(Front& front, double deep_m, const std::vector<Body>& bodies,
+                          std::size_t own) {
+    constexpr double least_long_m = 0.1, shorter_m = 0.05;
+    const Vec3 face = front.middle;
+    for (const auto& [before_m, inset_m] : {std::pair(0.0, clear_m),
+                                            {0.0, 0.01},
+                                            {board_m, clear_m},
+                                            {board_m, 0.01},
+                                            {board_m, 0.02}}) {
+        front.middle = along(face, before_m, front.out);
+        std::vector<Box> out{board_of(front, inset_m)};
+        if (!are_free(out, bodies, own)) continue;
+        for (double long_m = front.opening == Opening::slide ? deep_m - board_m : 0;
+             long_m >= least_long_m; long_m -= shorter_m) {
+            const std::vector<Box> tray = tray_of(front, inset_m, long_m);
+            if (!are_free(tray, bodies, own)) continue;
+            out.insert(out.end(), tray.begin(), tray.end());
+            break;
+        }
+        const Box grip = box_of(front, front.grip, front.grip_m);
+        if (are_free({&grip, 1}, bodies, own)) out.push_back(grip);
+        return out;
     }
-    return true;
+    return {};
 }
 
 }  // namespace
@@ -171,13 +205,13 @@ std::vector<JointedFront> jointed_fronts(std::vector<Body>& bodies,
             made.body = n;
             made.opening = front.opening;
             made.probability = front.probability;
-            made.middle_m = front.middle;
             made.colour = front.colour;
             made.wide_m = front.wide_m;
             made.high_m = front.high_m;
-            made.boxes = boards_of(front, deep_m);
-            if (const Box grip = box_of(front, front.grip, front.grip_m); is_free(grip, bodies, n))
-                made.boxes.push_back(grip);
+            made.grip_m = front.grip;
+            made.boxes = boxes_of(front, deep_m, bodies, n);
+            if (made.boxes.empty()) continue;
+            made.middle_m = front.middle;
             add_axis(front, made, deep_m);
             weigh(made, density_kg_m3);
             if (!body.fixed && !take_out(made, body)) continue;

@@ -17,6 +17,7 @@ struct JointedFront {
     double probability = 0;
     Vec3 middle_m{};  // of its outer face
     double wide_m = 0, high_m = 0;
+    Vec3 grip_m{};  // the middle of its handle
     Rgb8 colour{};
     std::vector<Box> boxes;  // they touch its body, and one another; simulators leave that out
     double mass_kg = 0;
@@ -33,7 +34,8 @@ struct JointedFront {
 };
 
 // Makes the fronts of each object bodies of their own, whose mass is taken from its body's. Boards
-// of the thickness and of a density of closed furniture's. What has no parts has no fronts.
+// of the thickness and of a density of closed furniture's, which lie in no other body. What has no
+// parts has no fronts.
 std::vector<JointedFront> jointed_fronts(std::vector<Body>& bodies,
                                          const std::vector<std::vector<Front>>& of_object,
                                          double density_kg_m3);

@@ -84,6 +84,8 @@ OrderedJson front_json(const ExportedFront& front) {
             {"middle_m", vector_or_null(front.middle_m)},
             {"wide_m", io::number(front.wide_m)},
             {"high_m", io::number(front.high_m)},
+            {"handle_m", vector_or_null(front.handle_m)},
+            {"mass_kg", io::number(front.mass_kg)},
             {"axis", vector_or_null(front.axis)},
             {"at_m", vector_or_null(front.at_m)},
             {"most", io::number(front.most)}};

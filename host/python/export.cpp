@@ -21,7 +21,7 @@ py::tuple body_tuple(const ExportedBody& b) {
 
 py::tuple front_tuple(const ExportedFront& f) {
     return py::make_tuple(f.name, f.object, f.opens, f.probability, f.middle_m, f.wide_m, f.high_m,
-                          f.axis, f.at_m, f.most);
+                          f.handle_m, f.mass_kg, f.axis, f.at_m, f.most);
 }
 
 }  // namespace

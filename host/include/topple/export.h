@@ -59,6 +59,8 @@ struct ExportedFront {
     double probability = 0;    // that it is there, and opens so
     Vec3 middle_m{};           // of its outer face
     double wide_m = 0, high_m = 0;
+    Vec3 handle_m{};  // the middle of its handle
+    double mass_kg = 0;
     Vec3 axis{};      // unit; it opens along it, or around it by the right-hand rule
     Vec3 at_m{};      // a point of a hinge's axis; of a slide middle_m
     double most = 0;  // how far it opens: metres, or radians

@@ -80,6 +80,8 @@ class ExportedFront(NamedTuple):
     middle_m: "list[float]"  # of its outer face, z up
     wide_m: float
     high_m: float
+    handle_m: "list[float]"  # the middle of its handle
+    mass_kg: float
     axis: "list[float]"  # unit; it opens along it, or around it by the right-hand rule
     at_m: "list[float]"  # a point of a hinge's axis; of a slide middle_m
     most: float  # how far it opens: metres, or radians

@@ -329,11 +329,13 @@ def _cloud(bag, topic, others):
 def _sweeps(bag, messages, topic, wait):
     """As _frames(), of clouds in their sensor's axes."""
     transforms = _transforms(bag)
-    seen = taken = 0
+    seen = taken = placed = 0
     for recorded, message in bag.between(topic):
         wait(recorded)
         seen += 1
-        pose = transforms.to_root(message.header.frame_id.lstrip('/'), _time(message.header))
+        frame = message.header.frame_id.lstrip('/')
+        pose = transforms.to_root(frame, _time(message.header))
+        placed += frame in transforms.edges
         if pose is None:
             continue
         with reading(bag.path, FORMAT):
@@ -343,7 +345,10 @@ def _sweeps(bag, messages, topic, wait):
         taken += 1
     if taken == 0:
         raise wrong(bag.path, f'{topic}: tf does not say where the sensor was when any of its {seen} clouds was taken')
-    return [f'{taken} of the {seen} clouds of {topic} were played' + ('.' if taken == seen else '; of the others tf does not say where the sensor was.')]
+    notes = [f'{taken} of the {seen} clouds of {topic} were played' + ('.' if taken == seen else '; of the others tf does not say where the sensor was.')]
+    if not placed:
+        notes.append(f'The bag has no tf of "{frame}": all clouds were played as of a sensor that stands still, whose frame they are in.')
+    return notes
 
 
 def play(path, out, options, wait):
