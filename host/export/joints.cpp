@@ -16,20 +16,18 @@ namespace topple::exports {
 namespace {
 
 constexpr double board_m = physics::ClosedBody::board_m;
-constexpr double up_z = 1;
 constexpr double clear_m = 0.002;  // between a front and the next one
 
 // A box with sides along across, out and up.
 Box box_of(const Front& front, const Vec3& center, const Vec3& sides_m) {
     return {center,
-            {opposite(front.across), front.out, {0, 0, up_z}},
+            {opposite(front.across), front.out, {0, 0, 1}},
             {sides_m[0] / 2, sides_m[1] / 2, sides_m[2] / 2}};
 }
 
 // Of a front's frame: across, out, up from the middle of its outer face.
 Vec3 place(const Front& front, double across, double out, double up) {
-    return along(along(along(front.middle, across, front.across), out, front.out), up,
-                 {0, 0, up_z});
+    return along(along(along(front.middle, across, front.across), out, front.out), up, {0, 0, 1});
 }
 
 double volume_m3(const Box& box) {
@@ -128,11 +126,11 @@ void add_axis(const Front& from, JointedFront& to, double deep_m) {
             to.most = drawn_share * deep_m;
             break;
         case Opening::hinge_at_low_u:
-            to.axis = {0, 0, -up_z};
+            to.axis = {0, 0, -1};
             to.at_m = place(from, -from.wide_m / 2, 0, 0);
             break;
         case Opening::hinge_at_high_u:
-            to.axis = {0, 0, up_z};
+            to.axis = {0, 0, 1};
             to.at_m = place(from, from.wide_m / 2, 0, 0);
             break;
         case Opening::hinge_below:
@@ -208,7 +206,7 @@ std::vector<JointedFront> jointed_fronts(std::vector<Body>& bodies,
             made.colour = front.colour;
             made.wide_m = front.wide_m;
             made.high_m = front.high_m;
-            made.grip_m = front.grip;
+            made.handle_m = front.grip;
             made.boxes = boxes_of(front, deep_m, bodies, n);
             if (made.boxes.empty()) continue;
             made.middle_m = front.middle;

@@ -17,7 +17,7 @@ struct JointedFront {
     double probability = 0;
     Vec3 middle_m{};  // of its outer face
     double wide_m = 0, high_m = 0;
-    Vec3 grip_m{};  // the middle of its handle
+    Vec3 handle_m{};  // the middle of its handle
     Rgb8 colour{};
     std::vector<Box> boxes;  // they touch its body, and one another; simulators leave that out
     double mass_kg = 0;

@@ -54,7 +54,7 @@ ExportSummary summary_of(const exports::SimScene& scene) {
         to.middle_m = from.middle_m;
         to.wide_m = from.wide_m;
         to.high_m = from.high_m;
-        to.handle_m = from.grip_m;
+        to.handle_m = from.handle_m;
         to.mass_kg = from.mass_kg;
         to.axis = from.axis;
         to.at_m = from.at_m;
