@@ -263,8 +263,8 @@ struct Rectangle {
 
 // That what sticks out of a face is a grip, and not noise: a logistic function of the share of
 // cells around it that have readings off the face, of the cells that it was seen in, and of these
-// by its length; fitted on 238 such patches in 44 generated rooms, of which 74 are grips, and left
-// out room by room 67 of these are told, and 6 of the others are taken for some.
+// by its length; fitted on such patches of 34 generated rooms, of which 74 are grips: left out room
+// by room 67 of these are told, and 6 others are taken for some.
 double grip_chance(double off_share, double seen, double seen_by_length) {
     const double odds = -13.51 - 1.551 * std::log(off_share + 0.005) + 1.706 * std::log(seen) +
                         2.899 * seen_by_length;
