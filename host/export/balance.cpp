@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "export/brace.h"
+#include "export/eigen.h"
 #include "export/separate.h"
 #include "export/touching.h"
 
@@ -21,10 +22,6 @@ constexpr double at_rest_share = 0.01;
 constexpr double out_of_level = 0.005;
 // Simulators let things creep down slopes that friction just holds.
 constexpr double sure_friction = 0.8;
-
-Eigen::Vector3d eigen(const Vec3& v) {
-    return {v[0], v[1], v[2]};
-}
 
 // A force of one contact along an edge of its cone of friction, on the body above; its opposite
 // acts on the one below.

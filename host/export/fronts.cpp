@@ -159,6 +159,14 @@ void add_fronts(const GrippedFace& face, const ColumnFronts& column, std::vector
     }
 }
 
+// So that the largest is 1: products over many columns would get lost. False where none is above 0.
+bool scaled_to_one(std::vector<double>& values) {
+    const double most = *std::ranges::max_element(values);
+    if (!(most > 0)) return false;
+    for (double& each : values) each /= most;
+    return true;
+}
+
 // Faces that lie close behind one another may have the same grip: the larger front has it.
 void drop_doubles(std::vector<std::vector<Front>>& of_object) {
     constexpr double one_grip_m = 0.05;
@@ -214,9 +222,7 @@ std::vector<ColumnFronts> columns_of(const GrippedFace& face) {
         for (std::size_t a = 0; a < steps; ++a)
             for (std::size_t b = a + 1; b < steps; ++b)
                 ends[b] += from[c][a] * chances[c].sum_at(edge(a), edge(b));
-        const double all = *std::ranges::max_element(ends);
-        if (!(all > 0)) return {};
-        for (double& each : ends) each /= all;
+        if (!scaled_to_one(ends)) return {};
     }
     std::vector<double> begins(steps, 0);
     begins[steps - 1] = 1;
@@ -231,9 +237,7 @@ std::vector<ColumnFronts> columns_of(const GrippedFace& face) {
         for (std::size_t a = 0; a < steps; ++a)
             for (std::size_t b = a + 1; b < steps; ++b)
                 begins[a] += to[c][b] * chances[c].sum_at(edge(a), edge(b));
-        const double all = *std::ranges::max_element(begins);
-        if (!(all > 0)) return {};
-        for (double& each : begins) each /= all;
+        if (!scaled_to_one(begins)) return {};
     }
     std::vector<ColumnFronts> out;
     for (std::size_t c = 0; c < grips.size(); ++c) {

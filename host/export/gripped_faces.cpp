@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/field_rules.h"
+#include "core/ranked.h"
 #include "core/rotation.h"
 #include "core/vectors.h"
 
@@ -179,9 +180,7 @@ std::optional<Plane> plane_near(const Points& points, std::span<const std::uint3
     if (on.empty() || dot(out.out, facing) < least_cosine) return {};
     std::vector<double> at;
     for (const Vec3& p : on) at.push_back(dot(out.out, p));
-    const auto half = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
-    std::nth_element(at.begin(), half, at.end());
-    out.at_m = *half;
+    out.at_m = upper_median(at);
     return out;
 }
 
@@ -308,9 +307,8 @@ std::optional<Grip> grip_of(const Map::Patch& patch, const Map& face, const Rect
     if (out_m.size() < least_seen ||
         static_cast<double>(of_face) < least_around * static_cast<double>(ring))
         return {};
-    const auto most = out_m.begin() + static_cast<std::ptrdiff_t>(out_m.size() * 4 / 5);
-    std::nth_element(out_m.begin(), most, out_m.end());
-    if (*most < least_out_m) return {};
+    grip.out_m = ranked(out_m, out_m.size() * 4 / 5);
+    if (grip.out_m < least_out_m) return {};
     const auto seen = static_cast<double>(out_m.size());
     grip.probability =
         grip_chance(std::min(1.0, static_cast<double>(off) /
@@ -321,18 +319,16 @@ std::optional<Grip> grip_of(const Map::Patch& patch, const Map& face, const Rect
     grip.z = maps.low_z + (box.low_z + box.high_z + 1) * cell_m / 2;
     grip.wide_m = wide_m;
     grip.high_m = high_m;
-    grip.out_m = *most;
     return grip;
 }
 
 // The first and last line that is as full as most are.
 std::pair<int, int> full_lines(const std::vector<int>& count) {
     constexpr double share = 0.3;
-    std::vector<int> sorted;
+    std::vector<int> any;
     for (const int c : count)
-        if (c > 0) sorted.push_back(c);
-    std::ranges::sort(sorted);
-    const double least = share * sorted[sorted.size() * 9 / 10];
+        if (c > 0) any.push_back(c);
+    const double least = share * ranked(any, any.size() * 9 / 10);
     int first = 0, last = static_cast<int>(count.size()) - 1;
     while (count[first] <= least) ++first;
     while (count[last] <= least) --last;
@@ -472,13 +468,12 @@ class Look {
                 (outside < -beside_m ? within : rim).push_back(static_cast<float>(behind));
         }
         if (rim.size() < least_seen) return 0;
-        const auto deepest = rim.begin() + static_cast<std::ptrdiff_t>(rim.size() * 9 / 10);
-        std::nth_element(rim.begin(), deepest, rim.end());
+        const float deepest = ranked(rim, rim.size() * 9 / 10);
         // Its back may be seen.
         const auto inside = std::ranges::count_if(
-            within, [&](float behind) { return behind < *deepest - beside_m; });
+            within, [&](float behind) { return behind < deepest - beside_m; });
         if (static_cast<double>(inside) > most_within * static_cast<double>(rim.size())) return 0;
-        return *deepest;
+        return deepest;
     }
 
     const Points& points_;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/vectors.h"
+#include "export/eigen.h"
 #include "export/named_bodies.h"
 #include "export/separate.h"
 #include "physics/closed_furniture.h"
@@ -55,10 +56,6 @@ std::vector<Box> tray_of(const Front& front, double inset_m, double long_m) {
     return out;
 }
 
-Eigen::Vector3d vec(const Vec3& v) {
-    return {v[0], v[1], v[2]};
-}
-
 // m (|d|^2 1 - d d^T): what a mass adds about a point so far away.
 Eigen::Matrix3d point_inertia(double mass_kg, const Eigen::Vector3d& d) {
     return mass_kg * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
@@ -80,18 +77,18 @@ void weigh(JointedFront& front, double density_kg_m3) {
     for (const Box& box : front.boxes) {
         const double mass = density_kg_m3 * volume_m3(box);
         front.mass_kg += mass;
-        moment += mass * vec(box.center);
+        moment += mass * eigen(box.center);
     }
     const Eigen::Vector3d center = moment / front.mass_kg;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     for (const Box& box : front.boxes) {
         const double mass = density_kg_m3 * volume_m3(box);
         Eigen::Matrix3d axes;
-        for (int a = 0; a < 3; ++a) axes.col(a) = vec(box.axis[a]);
-        const Eigen::Vector3d h2 = vec(box.half_m).cwiseAbs2();
+        for (int a = 0; a < 3; ++a) axes.col(a) = eigen(box.axis[a]);
+        const Eigen::Vector3d h2 = eigen(box.half_m).cwiseAbs2();
         const Eigen::Vector3d own(h2[1] + h2[2], h2[0] + h2[2], h2[0] + h2[1]);
         inertia += mass / 3 * (axes * own.asDiagonal() * axes.transpose()).eval() +
-                   point_inertia(mass, vec(box.center) - center);
+                   point_inertia(mass, eigen(box.center) - center);
     }
     front.center_m = {center[0], center[1], center[2]};
     front.inertia_kg_m2 = rows_of(inertia);
@@ -105,37 +102,38 @@ bool take_out(const JointedFront& front, Body& body) {
     Body rest = body;
     rest.mass_kg -= front.mass_kg;
     const Eigen::Vector3d center =
-        (body.mass_kg * vec(body.center_m) - front.mass_kg * vec(front.center_m)) / rest.mass_kg;
+        (body.mass_kg * eigen(body.center_m) - front.mass_kg * eigen(front.center_m)) /
+        rest.mass_kg;
     rest.center_m = {center[0], center[1], center[2]};
     rest.inertia_kg_m2 =
         rows_of(matrix(body.inertia_kg_m2) - matrix(front.inertia_kg_m2) -
-                point_inertia(front.mass_kg, vec(front.center_m) - vec(body.center_m)) -
-                point_inertia(rest.mass_kg, center - vec(body.center_m)));
+                point_inertia(front.mass_kg, eigen(front.center_m) - eigen(body.center_m)) -
+                point_inertia(rest.mass_kg, center - eigen(body.center_m)));
     if (!has_inertia(rest)) return false;
     body = std::move(rest);
     return true;
 }
 
-void add_axis(const Front& from, JointedFront& to, double deep_m) {
+void add_axis(double deep_m, JointedFront& front) {
     constexpr double drawn_share = 0.75;
-    to.most = std::numbers::pi / 2;
-    switch (from.opening) {
+    front.most = std::numbers::pi / 2;
+    switch (front.opening) {
         case Opening::slide:
-            to.axis = from.out;
-            to.at_m = from.middle;
-            to.most = drawn_share * deep_m;
+            front.axis = front.out;
+            front.at_m = front.middle;
+            front.most = drawn_share * deep_m;
             break;
         case Opening::hinge_at_low_u:
-            to.axis = {0, 0, -1};
-            to.at_m = place(from, -from.wide_m / 2, 0, 0);
+            front.axis = {0, 0, -1};
+            front.at_m = place(front, -front.wide_m / 2, 0, 0);
             break;
         case Opening::hinge_at_high_u:
-            to.axis = {0, 0, 1};
-            to.at_m = place(from, from.wide_m / 2, 0, 0);
+            front.axis = {0, 0, 1};
+            front.at_m = place(front, front.wide_m / 2, 0, 0);
             break;
         case Opening::hinge_below:
-            to.axis = from.across;
-            to.at_m = place(from, 0, 0, -from.high_m / 2);
+            front.axis = front.across;
+            front.at_m = place(front, 0, 0, -front.high_m / 2);
             break;
     }
 }
@@ -145,13 +143,9 @@ bool are_free(std::span<const Box> boxes, const std::vector<Body>& bodies, std::
     return std::ranges::all_of(boxes, [&](const Box& box) {
         const std::array<Vec3, 8> corners = box.corners();
         const std::optional<ConvexPart> part = hull_part(corners);
-        if (!part) return false;
-        for (std::size_t n = 0; n < bodies.size(); ++n) {
-            if (n == own) continue;
-            for (const ConvexPart& other : bodies[n].parts)
-                if (near(*part, other, 0) && overlap(*part, other)) return false;
-        }
-        return true;
+        return part && !any_near(bodies, *part, 0, [&](const Body& body, const ConvexPart& other) {
+                   return &body != &bodies[own] && overlap(*part, other);
+               });
     });
 }
 
@@ -194,23 +188,17 @@ std::vector<JointedFront> jointed_fronts(std::vector<Body>& bodies,
         Body& body = bodies[n];
         if (body.parts.empty()) continue;
         std::size_t number = 0;
-        for (Front front : of_object[n]) {
-            front.middle = plus(front.middle, body.moved_m);
-            front.grip = plus(front.grip, body.moved_m);
+        for (const Front& front : of_object[n]) {
             const double deep_m = std::min(most_deep_m, front.deep_m - behind_m);
             JointedFront made;
+            static_cast<Front&>(made) = front;
             made.name = body_name(body, n) + "_front_" + std::to_string(number);
             made.body = n;
-            made.opening = front.opening;
-            made.probability = front.probability;
-            made.colour = front.colour;
-            made.wide_m = front.wide_m;
-            made.high_m = front.high_m;
-            made.handle_m = front.grip;
-            made.boxes = boxes_of(front, deep_m, bodies, n);
+            made.middle = plus(front.middle, body.moved_m);
+            made.grip = plus(front.grip, body.moved_m);
+            made.boxes = boxes_of(made, deep_m, bodies, n);
             if (made.boxes.empty()) continue;
-            made.middle_m = front.middle;
-            add_axis(front, made, deep_m);
+            add_axis(deep_m, made);
             weigh(made, density_kg_m3);
             if (!body.fixed && !take_out(made, body)) continue;
             ++number;

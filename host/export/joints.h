@@ -10,15 +10,9 @@
 namespace topple::exports {
 
 // A door or a drawer as a body on a joint. Shut, as it was scanned. World frame.
-struct JointedFront {
-    std::string name;      // object_ID_front_N
-    std::size_t body = 0;  // what it is a part of: place in the scene's list
-    Opening opening = Opening::slide;
-    double probability = 0;
-    Vec3 middle_m{};  // of its outer face
-    double wide_m = 0, high_m = 0;
-    Vec3 handle_m{};  // the middle of its handle
-    Rgb8 colour{};
+struct JointedFront : Front {
+    std::string name;        // object_ID_front_N
+    std::size_t body = 0;    // what it is a part of: place in the scene's list
     std::vector<Box> boxes;  // they touch its body, and one another; simulators leave that out
     double mass_kg = 0;
     Vec3 center_m{};

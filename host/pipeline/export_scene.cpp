@@ -51,10 +51,10 @@ ExportSummary summary_of(const exports::SimScene& scene) {
         to.object = scene.bodies[from.body].object;
         to.opens = exports::to_string(from.opening);
         to.probability = from.probability;
-        to.middle_m = from.middle_m;
+        to.middle_m = from.middle;
         to.wide_m = from.wide_m;
         to.high_m = from.high_m;
-        to.handle_m = from.handle_m;
+        to.handle_m = from.grip;
         to.mass_kg = from.mass_kg;
         to.axis = from.axis;
         to.at_m = from.at_m;
