@@ -205,7 +205,8 @@ class Decomposition {
         }
     }
     // The cut that leaves the smallest boxes. Where none takes much away, as of a box that is
-    // hollow, the one that takes off most of what fills its own.
+    // hollow, the one that takes off most of what fills its own; where none does, as of a round
+    // cup, through the middle: its quarters have smaller boxes.
     std::optional<Cut> best_cut(const Piece& piece) const {
         const Side all{piece.box, static_cast<double>(piece.cells.size())};
         double least = all.box_cells() - least_gain * (all.box_cells() - all.cells), most = 0;
@@ -223,7 +224,16 @@ class Decomposition {
                 }
             });
         }
-        return best ? best : peel;
+        return best ? best : peel ? peel : halving(piece);
+    }
+
+    std::optional<Cut> halving(const Piece& piece) const {
+        std::size_t axis = 0;
+        for (std::size_t a = 1; a < 3; ++a)
+            if (layers_of(piece.box, a) > layers_of(piece.box, axis)) axis = a;
+        const auto layers = static_cast<std::int32_t>(layers_of(piece.box, axis));
+        if (layers < 2) return std::nullopt;
+        return Cut{axis, piece.box.low[axis] + layers / 2};
     }
 
     double voxel_m_;
