@@ -39,3 +39,9 @@ FN float dot3(float ax, float ay, float az, float bx, float by, float bz) {
         place[i] = near ? (k < count[i] ? j - lowest : 0) : j;             \
     }
 #define LOAD_FAR(to, from, base, place) EACH_ITEM(i) { to[i] = from[(base) + place[i]]; }
+
+// What a ray of the six-direction filling that goes a way meets at a cell (six_fill_sweep): its label,
+// and at bit 16 whether it meets the side that was seen.
+FN uint six_fill_met(uint cell, uint direction) {
+    return (cell & 65535u) | ((cell >> (16u + direction) & 1u) << 16u);
+}

@@ -84,8 +84,17 @@ struct FillOptions {
     std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
     std::vector<Role> roles;  // by primitive
 };
-std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene& volume,
+// Of each invisible voxel from which a ray hits a primitive.
+struct RayEnds {
+    Voxel at{};
+    std::int32_t primitive = -1;  // that takes it; or the nearest whose back a ray meets
+    std::uint8_t ends = 0;        // what its rays end at (fill_chance.h)
+    bool taken = false;
+};
+std::vector<RayEnds> six_direction_rays(device::Device& device, const VoxelScene& volume,
                                         const FillOptions& options);
+// Of those that are taken.
+std::vector<Claim> claims_of(std::span<const RayEnds> rays);
 
 // Ends filled solids at the surface on which they are seen to stand: rays pass from a box into
 // the table top that it hides, and take that for more of the box. What lies below goes to the
@@ -122,13 +131,15 @@ void commit(std::span<const Claim> claims, VoxelScene& volume, SolidCells& cells
 // Filling alone, of a volume by itself; an earlier completion is undone. Returns voxels completed.
 std::uint64_t fill(device::Device& device, VoxelScene& volume, const FillOptions& options);
 
-// All rounds.
+// All rounds. Returns what would make the volume what is likely (fill_chance.h), where filling has
+// not, for a commit() of its own: the models of joints were fitted to volumes that are filled as in
+// the paper. By what is completed in the end; sorted.
 struct CompletionOptions {
     FillOptions fill;
     std::vector<Ledge> ledges;
     const SpaceMap* map = nullptr;  // what it tells to be solid
 };
-void complete(device::Device& device, const CompletionOptions& options, VoxelScene& volume,
-              SolidCells& cells);
+std::vector<Claim> complete(device::Device& device, const CompletionOptions& options,
+                            VoxelScene& volume, SolidCells& cells);
 
 }  // namespace topple::vdb

@@ -274,10 +274,10 @@ bool uniformly_empty(const openvdb::Int32Grid::ConstAccessor& state, const Leaf&
 }
 
 std::vector<Leaf> leaves_to_fill(const VoxelScene::Grids& grids, const std::vector<bool>& fills,
-                                 unsigned votes, bool columns, std::int32_t lowest) {
+                                 unsigned votes, std::int32_t lowest) {
     FillLeaves leaves(grids, lowest);
     leaves.add_voters(fills, votes);
-    if (columns) leaves.add_columns(fills);
+    leaves.add_columns(fills);
     return leaves.leaves();
 }
 

@@ -17,11 +17,10 @@ bool uniformly_empty(const openvdb::Int32Grid::ConstAccessor& state, const LeafT
 // lies unseen behind its walls. What is left out changes no filled voxel, for at a leaf that is not
 // swept a ray ends as it would beyond it: at nothing known, unless that leaf is uniformly empty.
 //   fills    by primitive, whether it takes voxels
-//   votes    rays that must hit the same primitive
-//   columns  the ray upwards may suffice
+//   votes    rays that must hit the same primitive; the ray upwards may suffice
 //   lowest   voxels with k below stay as they are and stop rays
 std::vector<LeafTable::Leaf> leaves_to_fill(const VoxelScene::Grids& grids,
                                             const std::vector<bool>& fills, unsigned votes,
-                                            bool columns, std::int32_t lowest);
+                                            std::int32_t lowest);
 
 }  // namespace topple::vdb

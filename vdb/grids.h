@@ -115,6 +115,10 @@ struct VoxelScene::Grids {
     // away the label stays, but counts only where `state` is active.
     openvdb::Int32Grid::Ptr primitive;
     openvdb::MaskTree points;  // voxels that hold points
+    // Of those within the bounds whose seen side is known: index of the leaf * 512 + voxel,
+    // ascending.
+    std::vector<std::uint64_t> sided;
+    std::vector<std::uint8_t> seen_side;
     std::vector<std::int32_t> object_of_primitive;
     std::vector<std::pair<std::string, openvdb::FloatGrid::Ptr>> fields;
     Evidence evidence;

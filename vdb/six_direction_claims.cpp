@@ -13,6 +13,7 @@
 #include "topple/kernels/buffer.h"
 #include "topple/kernels/queue.h"
 #include "vdb/completion.h"
+#include "vdb/fill_chance.h"
 #include "vdb/fill_leaves.h"
 #include "vdb/grids.h"
 
@@ -20,9 +21,12 @@
 namespace topple::vdb {
 namespace {
 
-constexpr std::int32_t max_primitives = 65533;  // cells travel as 16 bits
+constexpr std::int32_t max_primitives = 65532;  // cells travel as 16 bits
 
-// What six_fill_sweep calls cells.
+// Two of what six_fill_sweep calls cells.
+constexpr std::uint32_t ground = 3, first_primitive = 4;
+
+// All of those.
 std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
                                     const std::vector<LeafTable::Leaf>& leaves,
                                     const std::vector<bool>& fills, std::int32_t lowest,
@@ -32,20 +36,29 @@ std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
     threads.each(leaves.size(), leaves_at_once, [&](std::size_t n) {
         for (std::size_t v = 0; v < 512; ++v) {
             if (leaves[n][2] * 8 + static_cast<std::int32_t>(v & 7) < lowest)
-                cells[n * 512 + v] = 2;
+                cells[n * 512 + v] = ground;
         }
         const auto* state = g.state->tree().probeConstLeaf(origin_of(leaves[n]));
         if (!state) return;
         const auto* label = g.primitive->tree().probeConstLeaf(origin_of(leaves[n]));
         for (openvdb::Index v = 0; v < 512; ++v) {
+            std::uint32_t& cell = cells[n * 512 + v];
             if (state->getValue(v) == static_cast<std::int32_t>(State::invisible)) continue;
-            std::uint32_t cell = 0;
+            cell = 0;
             if (state->isValueOn(v)) {
                 const std::int32_t p = label->getValue(v);
                 const bool votes = p >= 0 && fills[p];
-                cell = votes ? static_cast<std::uint32_t>(p) + 3 : 2;
+                cell = votes ? static_cast<std::uint32_t>(p) + first_primitive : 2;
             }
-            cells[n * 512 + v] = cell;
+        }
+        const std::int64_t index = g.leaves.index_of(leaves[n]);
+        if (index < 0) return;
+        const std::uint64_t first = static_cast<std::uint64_t>(index) << 9;
+        for (auto at = std::ranges::lower_bound(g.sided, first);
+             at != g.sided.end() && *at >> 9 == first >> 9; ++at) {
+            std::uint32_t& cell = cells[n * 512 + (*at & 511)];
+            if (cell >= first_primitive)
+                cell |= static_cast<std::uint32_t>(g.seen_side[at - g.sided.begin()]) << 16;
         }
     });
     return cells;
@@ -108,14 +121,11 @@ Runs runs_along(const VoxelScene::Grids& g, const std::vector<LeafTable::Leaf>& 
     return runs;
 }
 
-// By voxel of the leaves.
-struct Votes {
-    std::vector<std::uint16_t> taken;  // primitive + 1, or 0
-    std::vector<Basis> basis;          // of those
-};
-Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
-                     const std::vector<LeafTable::Leaf>& leaves, std::vector<std::uint32_t> cells,
-                     const FillOptions& options) {
+// What six_fill_vote finds, by voxel of the leaves.
+std::vector<std::uint32_t> sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
+                                          const std::vector<LeafTable::Leaf>& leaves,
+                                          std::vector<std::uint32_t> cells,
+                                          const FillOptions& options) {
     constexpr std::size_t entries_of_leaf = 6 * 64;
     const std::size_t count = cells.size();
     const device::Buffer<std::uint32_t> cell_words(device, std::span<const std::uint32_t>(cells),
@@ -150,8 +160,7 @@ Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
     constexpr std::size_t leaves_at_once = std::size_t{1} << 14;
     const std::size_t most = std::min(leaves.size(), leaves_at_once);
     const device::Buffer<std::uint32_t> filled(device, most * 512, "filled voxels");
-    Votes out{std::vector<std::uint16_t>(count), std::vector<Basis>(count, Basis::column)};
-    std::vector<std::uint32_t> taken(most * 512);
+    std::vector<std::uint32_t> out(count);
     for (std::size_t leaf = 0; leaf < leaves.size(); leaf += most) {
         const std::size_t some = std::min(most, leaves.size() - leaf), first = leaf * 512;
         queue.add<kernels::SixFillVote>(
@@ -163,20 +172,14 @@ Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
              .votes = options.votes,
              .columns = options.columns ? 1u : 0u});
         queue.run();
-        taken.resize(some * 512);
-        filled.download(taken);
-        for (std::size_t n = 0; n < taken.size(); ++n) {
-            const std::uint32_t votes = taken[n] >> 16;
-            out.taken[first + n] = static_cast<std::uint16_t>(taken[n]);
-            if (votes > 0) out.basis[first + n] = votes < 3 ? Basis::two_votes : Basis::three_votes;
-        }
+        filled.download(std::span(out).subspan(first, some * 512));
     }
     return out;
 }
 
 }  // namespace
 
-std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene& volume,
+std::vector<RayEnds> six_direction_rays(device::Device& device, const VoxelScene& volume,
                                         const FillOptions& options) {
     if (options.votes < 1 || options.votes > 6) {
         throw Error(ErrorKind::usage, "filling: " + std::to_string(options.votes) +
@@ -198,18 +201,29 @@ std::vector<Claim> six_direction_claims(device::Device& device, const VoxelScene
     for (std::int32_t p = 0; p <= highest; ++p)
         fills.push_back(!is_sheet(role_of(options.roles, p)));
 
-    const auto leaves = leaves_to_fill(g, fills, options.votes, options.columns, options.lowest);
+    const auto leaves = leaves_to_fill(g, fills, options.votes, options.lowest);
     if (leaves.empty()) return {};
     check_memory(device, g, leaves.size());
-    const Votes votes = sweep_and_vote(
+    const std::vector<std::uint32_t> words = sweep_and_vote(
         device, g, leaves, cells_of(g, leaves, fills, options.lowest, device.threads()), options);
-    std::vector<Claim> claims;
+    std::vector<RayEnds> out;
     in_voxel_order(leaves, [&](std::size_t leaf, std::size_t offset, const Voxel& at) {
-        const std::size_t n = leaf * 512 + offset;
-        if (votes.taken[n] == 0) return;
-        claims.push_back({at, static_cast<std::int32_t>(votes.taken[n]) - 1, votes.basis[n]});
+        const std::uint32_t word = words[leaf * 512 + offset];
+        if (word == 0) return;
+        const bool agree = word >> 24 != 0;
+        const auto ends =
+            static_cast<std::uint8_t>((word >> 16 & 127) + (agree ? all_ends / 2 : 0));
+        out.push_back(
+            {at, static_cast<std::int32_t>(word & 65535) - 1, ends, (word >> 23 & 1) != 0});
     });
-    return claims;
+    return out;
+}
+
+std::vector<Claim> claims_of(std::span<const RayEnds> rays) {
+    std::vector<Claim> out;
+    for (const RayEnds& each : rays)
+        if (each.taken) out.push_back({each.at, each.primitive, basis_of(each.ends)});
+    return out;
 }
 
 }  // namespace topple::vdb

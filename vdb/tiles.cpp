@@ -123,7 +123,7 @@ SolidCells VoxelScene::solid_cells() const {
         const auto offset = static_cast<openvdb::Index>(at);
         if (!state->isValueOn(offset)) return;
         const bool seen = state->getValue(offset) == static_cast<std::int32_t>(State::surface);
-        cells.add(voxel, primitive->getValue(offset), seen ? Basis::surface : Basis::two_votes);
+        cells.add(voxel, primitive->getValue(offset), seen ? Basis::surface : Basis::half_enclosed);
     });
     return cells;
 }

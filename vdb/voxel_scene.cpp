@@ -37,12 +37,15 @@ namespace {
 
 constexpr std::int32_t window = 1 << 20;  // voxels from the points' median, either way
 
-void check(const CloudView& cloud, std::span<const std::int32_t> label) {
-    if (label.size() != cloud.size()) {
-        throw Error(ErrorKind::usage, "voxel scene: " + std::to_string(label.size()) +
-                                          " labels for " + std::to_string(cloud.size()) +
-                                          " points");
-    }
+void check(const CloudView& cloud, std::span<const std::int32_t> label,
+           std::span<const std::uint8_t> seen_side) {
+    const auto need = [&](std::size_t count, const char* what) {
+        if (count != cloud.size())
+            throw Error(ErrorKind::usage, "voxel scene: " + std::to_string(count) + " " + what +
+                                              " for " + std::to_string(cloud.size()) + " points");
+    };
+    need(label.size(), "labels");
+    if (!seen_side.empty()) need(seen_side.size(), "seen sides");
 }
 
 constexpr std::size_t point_chunk = std::size_t{1} << 14;  // points handed to a thread at once
@@ -228,14 +231,31 @@ std::int32_t majority(std::vector<std::int32_t>& labels) {
     return best;
 }
 
-void mark_labels(const SortedPoints& points, std::span<const std::int32_t> label,
-                 VoxelScene::Grids& g) {
+// Of a voxel's points a quarter suffice. A wall that was seen from both sides has none.
+std::uint8_t side_of(std::span<const std::size_t> points, std::span<const std::uint8_t> seen_side) {
+    std::uint8_t side = 0;
+    for (unsigned way = 0; way < 6; ++way) {
+        std::size_t count = 0;
+        for (const std::size_t point : points) count += seen_side[point] >> way & 1;
+        if (4 * count >= points.size() && count > 0) side |= static_cast<std::uint8_t>(1u << way);
+    }
+    constexpr unsigned low_ways = 0b010101;
+    const unsigned both = side & (side >> 1) & low_ways;
+    return static_cast<std::uint8_t>(side & ~(both | both << 1));
+}
+
+void mark_points(const SortedPoints& points, std::span<const std::int32_t> label,
+                 std::span<const std::uint8_t> seen_side, VoxelScene::Grids& g) {
     StateLeaf* primitive = nullptr;
+    std::uint64_t leaf_index = 0;
     bool stray = false;
     std::vector<std::int32_t> labels;  // of one voxel's points
+    g.sided.clear();
+    g.seen_side.clear();
     each_voxel(
         points,
         [&](std::uint64_t leaf) {
+            leaf_index = leaf;
             stray = leaf >= points.leaves.box_size();
             primitive = g.primitive->tree().touchLeaf(origin_of(points.leaves.leaf_at(leaf)));
         },
@@ -243,6 +263,11 @@ void mark_labels(const SortedPoints& points, std::span<const std::int32_t> label
             labels.clear();
             for (const std::size_t point : of_voxel) labels.push_back(std::max(label[point], -1));
             primitive->setValueOn(offset, stray ? -1 : majority(labels));
+            if (stray || seen_side.empty()) return;
+            if (const std::uint8_t side = side_of(of_voxel, seen_side)) {
+                g.sided.push_back(leaf_index << 9 | offset);
+                g.seen_side.push_back(side);
+            }
         });
 }
 
@@ -278,18 +303,19 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud) : VoxelS
 }
 
 VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
-                       std::span<const std::int32_t> label)
+                       std::span<const std::int32_t> label, std::span<const std::uint8_t> seen_side)
     : VoxelScene(frame) {
     check(frame);
-    check(cloud, label);
+    check(cloud, label, seen_side);
     const SortedPoints points = sort_points(frame, cloud);
     mark_surface(points, *grids_);
-    mark_labels(points, label, *grids_);
+    mark_points(points, label, seen_side, *grids_);
 }
 
-void VoxelScene::set_labels(const CloudView& cloud, std::span<const std::int32_t> label) {
-    check(cloud, label);
-    mark_labels(sort_points(grids_->frame, cloud), label, *grids_);
+void VoxelScene::set_labels(const CloudView& cloud, std::span<const std::int32_t> label,
+                            std::span<const std::uint8_t> seen_side) {
+    check(cloud, label, seen_side);
+    mark_points(sort_points(grids_->frame, cloud), label, seen_side, *grids_);
 }
 
 VoxelScene::~VoxelScene() = default;

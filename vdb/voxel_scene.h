@@ -74,18 +74,22 @@ class VoxelScene {
   public:
     // Surface voxels from points and their primitive labels (-1: no primitive; the voxel is still
     // surface). A voxel takes the label that most of its labelled points have, the lowest of
-    // equals. The scene's bounds are those of its points; where few stray points lie far from all
-    // others, the bounds leave them out (0.1 % per side), and only their own leaves exist out
-    // there, which belong to no primitive. Points that no voxel index can reach, further than 2^20
-    // voxels from the points' median, are left out. Throws Error(usage) for a frame that is no
-    // rotation, a voxel size that is not positive, or labels that don't match the points;
-    // Error(input) where the bounds hold more leaves than memory allows.
-    VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
-               std::span<const std::int32_t> label);
+    // equals. seen_side: empty where it is not known, or for each point a bit by direction (-x +x
+    // -y +y -z +z): what goes that way meets its surface on the side from which it was seen. A
+    // voxel has the bits of a quarter of its points, but neither of two opposite ones. The scene's
+    // bounds are those of its points; where few stray points lie far from all others, the bounds
+    // leave them out (0.1 % per side), and only their own leaves exist out there, which belong to
+    // no primitive. Points that no voxel index can reach, further than 2^20 voxels from the points'
+    // median, are left out. Throws Error(usage) for a frame that is no rotation, a voxel size that
+    // is not positive, or labels or sides that don't match the points; Error(input) where the
+    // bounds hold more leaves than memory allows.
+    VoxelScene(const VoxelFrame& frame, const CloudView& cloud, std::span<const std::int32_t> label,
+               std::span<const std::uint8_t> seen_side = {});
     // The same before labels are known: what is carved doesn't depend on them.
     VoxelScene(const VoxelFrame& frame, const CloudView& cloud);
     // The labels of a scene of the same cloud.
-    void set_labels(const CloudView& cloud, std::span<const std::int32_t> label);
+    void set_labels(const CloudView& cloud, std::span<const std::int32_t> label,
+                    std::span<const std::uint8_t> seen_side = {});
     // A scene without points or bounds, for put_leaf(), labels and write().
     explicit VoxelScene(const VoxelFrame& frame);
     // As it was saved. Throws Error(input) for what no scene saves. It can't be carved further.

@@ -31,6 +31,7 @@ class SolidScene {
     const BoundaryCells& boundary() const { return boundary_; }
     const CellColumns& columns() const { return columns_; }
     std::size_t primitives() const { return roles_.size(); }
+    const std::vector<Role>& roles() const { return roles_; }  // by primitive
     Role role(std::int32_t primitive) const { return role_of(roles_, primitive); }
     std::vector<bool> shell() const { return shell_of(roles_); }  // by primitive
     // Of cell n.

@@ -91,6 +91,7 @@ class Closing {
                 out_.y.push_back(p[1]);
                 out_.z.push_back(p[2]);
                 out_.face.push_back(face);
+                out_.surfel.push_back(static_cast<std::uint32_t>(corner[0]));
             }
         }
     }
@@ -150,6 +151,7 @@ GapPoints close_gaps(const Surfels& s, std::span<const std::int32_t> face,
         append(out.y, closed[p].y);
         append(out.z, closed[p].z);
         append(out.face, closed[p].face);
+        append(out.surfel, closed[p].surfel);
         out.primitive.resize(out.x.size(), static_cast<std::int32_t>(p));
         closed[p] = {};
     }

@@ -16,7 +16,8 @@ namespace topple::geometry {
 struct GapPoints {
     std::vector<float> x, y, z;  // metres, the cloud's frame
     std::vector<std::int32_t> primitive;
-    std::vector<std::int32_t> face;  // -1: between two faces
+    std::vector<std::int32_t> face;     // -1: between two faces
+    std::vector<std::uint32_t> surfel;  // one that it lies beside
     std::size_t size() const { return x.size(); }
 };
 

@@ -94,10 +94,7 @@ std::shared_ptr<const SolidScene> without_false_feet(
         const std::int32_t o = object_of(boundary.primitive[b]);
         kept[b] = o < 0 || o >= objects || boundary.k[b] + 1 >= feet[o];
     }
-    std::vector<Role> roles;
-    for (std::size_t p = 0; p < solids->primitives(); ++p)
-        roles.push_back(solids->role(static_cast<std::int32_t>(p)));
-    return std::make_shared<const SolidScene>(std::move(cells), std::move(roles), solids->strays(),
+    return std::make_shared<const SolidScene>(std::move(cells), solids->roles(), solids->strays(),
                                               boundary.only(kept));
 }
 

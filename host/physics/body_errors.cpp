@@ -118,7 +118,8 @@ void add_guesses(const SolidCells& cells, std::span<const double> shares,
     std::map<std::pair<std::int32_t, Basis>, Pieces> pieces;
     const double cube = cells.voxel_m * cells.voxel_m * cells.voxel_m;
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        if (cells.primitive[n] < 0 || cells.basis[n] < Basis::column || !(shares[n] > 0)) continue;
+        if (cells.primitive[n] < 0 || cells.basis[n] < Basis::half_enclosed || !(shares[n] > 0))
+            continue;
         pieces[{cells.primitive[n], cells.basis[n]}].add(
             shares[n] * cube, middle(cells.i[n], cells.j[n], cells.k[n], cells.voxel_m));
     }

@@ -35,8 +35,10 @@ FoundParts find_parts(device::Device& device, Observation input, const ParseOpti
     if (voxels.solids->primitives() == 0) fail_without_surface(input, source, extent);
     out.parts = solid_parts(surfaces, voxels);
     out.points = labelled_points(input, surfaces, voxels, options.coordinates);
-    out.voxels = std::move(voxels.scene);
     out.weighed = weigh_parts(device, out.parts, options, stage);  // 4.2
+    take_likely(voxels);
+    out.parts.solids = voxels.solids;
+    out.voxels = std::move(voxels.scene);
     return out;
 }
 

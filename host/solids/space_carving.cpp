@@ -74,30 +74,30 @@ bool SpaceCarving::carve(vdb::VoxelScene& scene,
     return coverage.from_around();
 }
 
-SpaceCarving::Carved SpaceCarving::take_carved(std::span<const std::int32_t> primitive_of_point) {
+SpaceCarving::Carved SpaceCarving::take_carved(const Marks& marks) {
     while (beside_.wait_for(between_looks) == std::future_status::timeout) device_.threads().poll();
     Carved out = beside_.get();
-    out.scene->set_labels(input_.cloud, primitive_of_point);
+    out.scene->set_labels(input_.cloud, marks.label, marks.seen_side);
     return out;
 }
 
-SpaceCarving::Carved SpaceCarving::finish(std::span<const std::int32_t> primitive_of_point,
-                                          const geometry::GapPoints& gaps, StageClock& stage) {
+SpaceCarving::Carved SpaceCarving::finish(const Marks& marks, const geometry::GapPoints& gaps,
+                                          StageClock& stage) {
     Carved out;
     const bool beside = beside_.valid();
     if (!beside) {
         out.scene = stage("voxels", [&] {
-            if (gaps.size() == 0)
-                return std::make_shared<vdb::VoxelScene>(frame_, input_.cloud, primitive_of_point);
-            std::vector<std::int32_t> label(primitive_of_point.begin(), primitive_of_point.end());
-            label.insert(label.end(), gaps.primitive.begin(), gaps.primitive.end());
-            return std::make_shared<vdb::VoxelScene>(
-                frame_, geometry::with_gaps(input_.cloud, gaps), label);
+            const auto of = [&](const CloudView& cloud) {
+                return std::make_shared<vdb::VoxelScene>(frame_, cloud, marks.label,
+                                                         marks.seen_side);
+            };
+            return gaps.size() == 0 ? of(input_.cloud)
+                                    : of(geometry::with_gaps(input_.cloud, gaps));
         });
     }
     stage("carving", [&] {
         if (beside) {
-            out = take_carved(primitive_of_point);
+            out = take_carved(marks);
         } else if (input_.frames) {
             out.from_around =
                 carve(*out.scene, [&](double done) { stage.progress("carving", done); });

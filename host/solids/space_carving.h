@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <stop_token>
+#include <vector>
 
 #include "device/stage_clock.h"
 #include "geometry/surface_gaps.h"
@@ -40,15 +41,18 @@ class SpaceCarving {
         std::shared_ptr<vdb::VoxelScene> scene;
         bool from_around = false;  // whether the frames show the scene from around
     };
-    // Once: with the primitive of each point, and of those that close gaps. Throws what carving
-    // beside has thrown.
-    Carved finish(std::span<const std::int32_t> primitive_of_point, const geometry::GapPoints& gaps,
-                  StageClock& stage);
+    // What VoxelScene is told of the points and, after them, of those that close gaps.
+    struct Marks {
+        std::vector<std::int32_t> label;
+        std::vector<std::uint8_t> seen_side;
+    };
+    // Once. Throws what carving beside has thrown.
+    Carved finish(const Marks& marks, const geometry::GapPoints& gaps, StageClock& stage);
 
   private:
     void begin();
     bool carve(vdb::VoxelScene& scene, const std::function<void(double)>& progress) const;
-    Carved take_carved(std::span<const std::int32_t> primitive_of_point);
+    Carved take_carved(const Marks& marks);
 
     device::Device& device_;
     const Observation& input_;

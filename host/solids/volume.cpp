@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -16,7 +17,6 @@
 #include "solids/boundary.h"
 #include "solids/patches.h"
 #include "solids/solid_places.h"
-#include "vdb/completion.h"
 
 namespace topple {
 namespace {
@@ -33,20 +33,8 @@ std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t pri
     return number;
 }
 
-// The k of the voxels in which most of the lowest storey's floor lies; the lowest number where
-// there is no floor.
-std::int32_t floor_level(const SolidCells& cells, const Surfaces& geometry) {
-    const double top = (geometry.storeys.empty() ? std::numeric_limits<double>::infinity()
-                                                 : geometry.storeys.front().top_m) /
-                       cells.voxel_m;
-    std::vector<std::int32_t> k;
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        if (role_of(geometry.role, cells.primitive[n]) == Role::floor && cells.k[n] < top)
-            k.push_back(cells.k[n]);
-    }
-    if (k.empty()) return std::numeric_limits<std::int32_t>::min();
-    return upper_median(k);
-}
+// Of a normal along an axis, that what goes along it meets the one side or the other.
+constexpr double least_across = 0.35;
 
 // The faces of the primitives: what bounds the solids within their voxels.
 struct Faces {
@@ -162,7 +150,7 @@ Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
 std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Observation& input,
                                               const Surfaces& geometry,
                                               const geometry::GapPoints& gaps,
-                                              std::span<const Ledge> ledges, const Volume& volume,
+                                              std::span<const Ledge> ledges, Volume& volume,
                                               SolidCells cells, SolidDetail detail) {
     const bool within_voxels = detail == SolidDetail::within_voxels;
     std::vector<Role> roles = left_of(volume.number, geometry.role);
@@ -171,6 +159,7 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Obse
         faces = find_faces(device, input, geometry, gaps, volume.number, cells.voxel_m, roles);
     else
         faces.sheet = find_sheets(geometry, volume.number, roles);
+    volume.sheet = faces.sheet;
     cells.unseen_below = unseen_below(vdb::VolumeView(*volume.scene, cells, roles), faces.sheet);
     Parted parted = part_strays(cells, *volume.scene);
     BoundaryCells boundary;
@@ -179,6 +168,25 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Obse
                                          faces.sheet, between_solids(ledges, volume.number));
     return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
                                               std::move(parted.strays), std::move(boundary));
+}
+
+SpaceCarving::Marks marks_of(const Observation& input, const Surfaces& geometry,
+                             const geometry::GapPoints& gaps, const Rotation& grid_from_input) {
+    SpaceCarving::Marks out{geometry.primitive_of_point, {}};
+    out.label.insert(out.label.end(), gaps.primitive.begin(), gaps.primitive.end());
+    if (input.viewpoints.empty() && input.cloud.nx.empty()) return out;
+    const geometry::Surfels& s = geometry.surfels;
+    std::vector<std::uint8_t> of_surfel(s.size(), 0);
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        const Vec3 normal = turned(grid_from_input, {s.nx[n], s.ny[n], s.nz[n]});
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (std::abs(normal[a]) < least_across) continue;
+            of_surfel[n] |= static_cast<std::uint8_t>(1u << (2 * a + (normal[a] < 0 ? 1 : 0)));
+        }
+    }
+    for (const std::uint32_t n : s.of_point) out.seen_side.push_back(of_surfel[n]);
+    for (const std::uint32_t n : gaps.surfel) out.seen_side.push_back(of_surfel[n]);
+    return out;
 }
 
 constexpr const char* fraction_field = "fraction";
@@ -220,6 +228,30 @@ void clear_lost_labels(const SolidScene& before, const SolidScene& now, vdb::Vox
     vdb::commit(claims, scene, cells);
 }
 
+void take_likely(Volume& volume) {
+    const SolidScene& before = *volume.solids;
+    const SolidCells& were = before.cells();
+    // Of cells that are not solid after all, what their surfaces left of them.
+    const BoundaryCells& boundary = before.boundary();
+    std::vector<bool> kept(boundary.size(), true);
+    std::size_t n = 0;
+    for (const vdb::Claim& claim : volume.likely) {
+        while (n < were.size() && place_of(were, n) < claim.at) ++n;
+        if (claim.solid || n == were.size() || place_of(were, n) != claim.at) continue;
+        const std::size_t b = boundary.find(were.i[n], were.j[n], were.k[n], were.primitive[n]);
+        if (b != BoundaryCells::absent) kept[b] = false;
+    }
+    SolidCells cells = were;
+    vdb::commit(volume.likely, *volume.scene, cells);
+    cells.unseen_below =
+        unseen_below(vdb::VolumeView(*volume.scene, cells, before.roles()), volume.sheet);
+    volume.solids = std::make_shared<const SolidScene>(std::move(cells), before.roles(),
+                                                       before.strays(), boundary.only(kept));
+    volume.likely.clear();
+    volume.scene->remove_field(fraction_field);
+    store_fractions(*volume.solids, *volume.scene);
+}
+
 void take_away(const TakenAway& taken, vdb::VoxelScene& scene) {
     scene.relabel(taken.number);
     std::vector<vdb::Voxel> empty;
@@ -232,6 +264,19 @@ void take_away(const TakenAway& taken, vdb::VoxelScene& scene) {
     scene.set_empty(empty);
     scene.remove_field(fraction_field);
     store_fractions(*taken.solids, scene);
+}
+
+vdb::FillOptions fill_options(const SolidCells& cells, std::span<const Role> roles, double top_m) {
+    std::vector<std::int32_t> floor;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (cells.basis[n] == Basis::surface && cells.k[n] < top_m / cells.voxel_m &&
+            role_of(roles, cells.primitive[n]) == Role::floor)
+            floor.push_back(cells.k[n]);
+    }
+    vdb::FillOptions out;
+    if (!floor.empty()) out.lowest = upper_median(floor);
+    out.roles.assign(roles.begin(), roles.end());
+    return out;
 }
 
 std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
@@ -260,19 +305,25 @@ Volume fill_volume(device::Device& device, const Observation& input, const Surfa
             gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
                                         geometry.primitives.label, voxel_m / 2, device.threads());
     });
-    const SpaceCarving::Carved carved = carving.finish(geometry.primitive_of_point, gaps, stage);
+    const SpaceCarving::Carved carved = carving.finish(
+        marks_of(input, geometry, gaps, carving.frame().grid_from_input), gaps, stage);
     out.scene = carved.scene;
     stage("filling", [&] {
         SolidCells cells = out.scene->solid_cells();
         vdb::CompletionOptions options;
+        const double inf = std::numeric_limits<double>::infinity();
+        options.fill = fill_options(
+            cells, geometry.role, geometry.storeys.empty() ? inf : geometry.storeys.front().top_m);
         options.fill.columns = carved.from_around;
-        options.fill.lowest = floor_level(cells, geometry);
-        options.fill.roles = geometry.role;
         options.ledges =
             geometry::ledges_between(geometry.surfels, geometry.primitives, geometry.frame.axes[2]);
         options.map = input.space ? &*input.space : nullptr;
-        vdb::complete(device, options, *out.scene, cells);
+        out.likely = vdb::complete(device, options, *out.scene, cells);
         out.number = solid_numbers(cells, geometry.role.size());
+        std::erase_if(out.likely, [&](vdb::Claim& claim) {
+            if (claim.solid) claim.primitive = out.number[claim.primitive];
+            return claim.solid && claim.primitive < 0;
+        });
         out.scene->relabel(out.number);
         cells.primitive = numbered(cells.primitive, out.number);
         out.solids = solid_scene(device, input, geometry, gaps, options.ledges, out,

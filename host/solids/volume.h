@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "solids/surfaces.h"
 #include "solids/taken_away.h"
 #include "topple/kernels/device.h"
+#include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 
 // Section 2.2 of the paper: from labelled points to solid voxels.
@@ -25,6 +27,9 @@ struct Volume {
     // Solid of each of the geometry's primitives; -1: it is a fragment, whose voxels are solid, but
     // no primitive's. Solids keep the order of the primitives.
     std::vector<std::int32_t> number;
+    // What would make it what is likely (vdb/completion.h), for take_likely().
+    std::vector<vdb::Claim> likely;
+    std::vector<bool> sheet;  // by solid: of the shell, and seen from one side only
     bool by_sensors = false;  // as Observation::by_sensors
 };
 
@@ -36,6 +41,14 @@ enum class SolidDetail { within_voxels, whole_voxels };
 Volume fill_volume(device::Device& device, const Observation& input, const Surfaces& geometry,
                    SpaceCarving& carving, StageClock& stage,
                    SolidDetail detail = SolidDetail::within_voxels);
+
+// How it fills: down to where most of the lowest storey's floor lies, which ends at top_m.
+vdb::FillOptions fill_options(const SolidCells& cells, std::span<const Role> roles,
+                              double top_m = std::numeric_limits<double>::infinity());
+
+// Makes the volume, in one piece and within voxels, what is likely: once joints are judged, whose
+// models were fitted to volumes that are filled as in the paper.
+void take_likely(Volume& volume);
 
 // What of the solids is found to be no primitive's, the same cells being solid.
 void clear_lost_labels(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene);

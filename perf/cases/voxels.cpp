@@ -199,7 +199,10 @@ Prepared six_fill_sweep(device::Device& device) {
     Words cells(std::size_t{512} * leaves);
     for (std::uint32_t& cell : cells) {
         const int kind = random.integer(0, 29);
-        cell = kind == 0 ? 0u : kind == 1 ? static_cast<std::uint32_t>(random.integer(2, 63)) : 1u;
+        const auto label = static_cast<std::uint32_t>(random.integer(4, 63));
+        cell = kind == 0   ? 0u
+               : kind == 1 ? label | static_cast<std::uint32_t>(random.integer(0, 63)) << 16
+                           : 1u;
     }
     struct Axis {
         device::Buffer<std::uint32_t> first, length, leaf, ends;
@@ -259,14 +262,17 @@ Prepared six_fill_vote(device::Device& device) {
     };
     auto on = std::make_shared<Buffers>();
     const auto any = [&] {
-        return random.chance(0.3) ? 0u : static_cast<std::uint32_t>(random.integer(2, 9));
+        const auto cell = static_cast<std::uint32_t>(random.integer(2, 11));
+        return random.chance(0.3) ? 0u
+               : cell < 4u        ? cell
+                                  : cell | static_cast<std::uint32_t>(random.integer(0, 63)) << 16;
     };
     Words words(count);
     for (std::uint32_t& w : words) w = random.chance(0.9) ? 1u : any();
     on->cells = upload(device, words, "cells");
     words.resize(std::size_t{6 * 64} * leaves);
     for (std::uint32_t& w : words)
-        w = any() | static_cast<std::uint32_t>(random.integer(0, 300)) << 16;
+        w = (any() & 131071u) | static_cast<std::uint32_t>(random.integer(0, 300)) << 17;
     on->entries = upload(device, words, "entries");
     on->filled = {device, count, "filled"};
     return {{count, "voxels", 11.0 * count, 6 * 40.0 * count},

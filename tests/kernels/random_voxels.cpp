@@ -48,6 +48,12 @@ void carve(RandomBatch& to, Random& random, std::uint32_t size) {
                                  c.params);
 }
 
+// Of a small number: what six_fill_sweep calls a cell, most of them such as can be filled.
+std::uint32_t random_cell(Random& random, std::uint32_t n) {
+    const std::uint32_t sides = random.below(2) * random.below(64) << 16;
+    return n < 4 ? n : n < 7 ? n | sides : n == 7 ? 65535u | sides : 1u;
+}
+
 void six_fill_sweep(RandomBatch& to, Random& random, std::uint32_t size) {
     // Runs of one to four leaves.
     Words first, length;
@@ -56,7 +62,7 @@ void six_fill_sweep(RandomBatch& to, Random& random, std::uint32_t size) {
         length.push_back(std::min(1 + random.below(4), size - at));
     }
     Words cells = naturals(random, 512 * size, 40);
-    for (auto& cell : cells) cell = cell < 6 ? cell : cell == 6 ? 65535u : 1u;
+    for (auto& cell : cells) cell = random_cell(random, cell);
     const std::uint32_t axis = random.below(3), runs = static_cast<std::uint32_t>(first.size());
     to.queue.add<kernels::SixFillSweep>(std::uint64_t{64} * runs,
                                         {.run_first = to.in(first),
@@ -71,9 +77,10 @@ void six_fill_sweep(RandomBatch& to, Random& random, std::uint32_t size) {
 void six_fill_vote(RandomBatch& to, Random& random, std::uint32_t leaves) {
     // Few labels and distances, so that ties are common; now and then any.
     Words cells = naturals(random, 512 * leaves, 12), entries = naturals(random, 384 * leaves, 7);
-    for (auto& cell : cells) cell = cell < 6 ? cell : cell == 6 ? 65535u : 1u;
+    for (auto& cell : cells) cell = random_cell(random, cell);
     for (auto& entry : entries)
-        entry = random.below(30) ? entry | random.below(3) << 16 : random.word();
+        entry = random.below(30) ? entry | random.below(2) << 16 | random.below(3) << 17
+                                 : random.word();
     to.queue.add<kernels::SixFillVote>(
         std::uint64_t{512} * leaves,
         {.cells = to.in(cells),

@@ -27,9 +27,11 @@ struct SweepCase {
                 for (int z = 0; z < dense.size[2]; ++z) {
                     // Mostly fillable, so that rays run across leaves; labels up to the largest.
                     const std::uint32_t kind = random.below(40);
+                    const std::uint32_t sides = random.below(2) * random.below(64) << 16;
                     const std::uint32_t cell = kind == 0   ? 0
-                                               : kind == 1 ? 2 + random.below(6)
-                                               : kind == 2 ? 65535u
+                                               : kind == 1 ? 2 + random.below(2)
+                                               : kind == 2 ? 65535u | sides
+                                               : kind == 3 ? (4 + random.below(6)) | sides
                                                            : 1;
                     dense.cell[dense.index({x, y, z})] = cell;
                     cells[address({x, y, z})] = cell;
@@ -62,13 +64,11 @@ std::array<int, 3> entered(const std::array<int, 3>& lowest, int line, int axis,
 
 std::uint32_t expected_entry(const SweepCase& c, const std::array<int, 3>& v, int axis, int way) {
     const oracle::SixHit hit = oracle::walk(c.dense, v, 2 * axis + way, empty_beyond(v, axis, way));
-    std::uint32_t cell = static_cast<std::uint32_t>(hit.primitive + 3);
-    if (hit.primitive < 0) {
-        std::array<int, 3> end = v;
-        end[axis] += way ? hit.distance : -hit.distance;
-        cell = hit.empty ? 0 : c.dense.inside(end) ? 2 : 1;
-    }
-    return cell | static_cast<std::uint32_t>(hit.distance - 1) << 16;
+    constexpr std::array<std::uint32_t, 4> cell_of{1, 0, 2, 3};  // by where it ends
+    const std::uint32_t cell = hit.primitive >= 0 ? static_cast<std::uint32_t>(hit.primitive + 4)
+                                                  : cell_of[static_cast<std::size_t>(hit.end)];
+    return cell | std::uint32_t{hit.end == oracle::End::front} << 16 |
+           static_cast<std::uint32_t>(hit.distance - 1) << 17;
 }
 
 class SixFillSweep : public EachBackend {
@@ -144,14 +144,18 @@ struct VoteCase {
     std::vector<std::uint32_t> cells, entries;
     VoteCase(std::uint64_t seed, std::uint32_t leaves) {
         Random random(seed);
-        const auto label = [&] { return random.below(30) == 0 ? 65535 : random.below(7); };
+        const auto label = [&] { return random.below(30) == 0 ? 65535 : random.below(9); };
         for (std::uint32_t n = 0; n < 512 * leaves; ++n)
             cells.push_back(random.below(8) == 0 ? label() : 1);
+        for (std::uint32_t& cell : cells)
+            if (cell > 3) cell |= random.below(2) * random.below(64) << 16;
         // Few labels and distances, so that ties are common; now and then the extremes.
         for (std::uint32_t n = 0; n < 384 * leaves; ++n) {
             const std::uint32_t distance =
-                random.below(30) == 0 ? 65535 - random.below(9) : random.below(3);
-            entries.push_back(label() | distance << 16);
+                random.below(30) == 0 ? 32767 - random.below(9) : random.below(3);
+            const std::uint32_t cell = label();
+            const std::uint32_t front = cell > 3 ? random.below(2) : 0;
+            entries.push_back(cell | front << 16 | distance << 17);
         }
     }
     // By walking through the leaf, and on from where the ray leaves it.
@@ -159,19 +163,21 @@ struct VoteCase {
         const int axis = side / 2;
         for (std::uint32_t distance = 1;; ++distance) {
             v[axis] += side % 2 ? 1 : -1;
-            std::uint32_t cell = 1, further = 0;
+            std::uint32_t cell = 1;
             if (v[axis] < 0 || v[axis] > 7) {
                 const int line = 8 * v[axis == 0 ? 1 : 0] + v[axis == 2 ? 1 : 2];
                 const std::uint32_t entry =
                     entries[leaf * 384 + static_cast<std::size_t>(64 * side + line)];
-                cell = entry & 0xffff;
-                further = entry >> 16;
+                const auto all = static_cast<int>(std::min(distance + (entry >> 17), 32767u));
+                if ((entry & 0xffff) == 1) return {-1, all, oracle::End::nothing};
+                const bool front = (entry >> 16 & 1) != 0;
+                return oracle::met((entry & 0xffff) | std::uint32_t{front} << (16 + side), side,
+                                   all);
             } else {
                 cell = cells[leaf * 512 + static_cast<std::size_t>(64 * v[0] + 8 * v[1] + v[2])];
                 if (cell == 1) continue;
             }
-            return {std::max(static_cast<std::int32_t>(cell) - 3, -1),
-                    static_cast<int>(std::min(distance + further, 65535u)), cell == 0};
+            return oracle::met(cell, side, static_cast<int>(distance));
         }
     }
     std::uint32_t expected(std::size_t leaf, const std::array<int, 3>& v, std::uint32_t votes,
@@ -181,11 +187,7 @@ struct VoteCase {
         std::array<oracle::SixHit, 6> hits;
         for (int side = 0; side < 6; ++side)
             hits[static_cast<std::size_t>(side)] = hit(leaf, v, side);
-        const std::int32_t voted = oracle::vote(hits, static_cast<int>(votes));
-        if (voted < 0) return columns ? static_cast<std::uint32_t>(oracle::column(hits) + 1) : 0;
-        const auto count = static_cast<std::uint32_t>(std::ranges::count(
-            hits, voted, [](const oracle::SixHit& each) { return each.primitive; }));
-        return static_cast<std::uint32_t>(voted + 1) | count << 16;
+        return oracle::told(hits, static_cast<int>(votes), columns);
     }
 };
 

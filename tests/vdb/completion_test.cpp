@@ -190,11 +190,11 @@ TEST(Completion, WhatHangsTogetherWithNothingSeenIsNotSolid) {
         SolidCells cells;
         cells.voxel_m = h;
         test::add_column(cells, 0, 0, 1, floor, Basis::surface);
-        test::add_column(cells, 0, 1, 4, bottle, Basis::two_votes);
-        test::add_column(cells, 0, 30, 33, bottle, Basis::two_votes);
+        test::add_column(cells, 0, 1, 4, bottle, Basis::half_enclosed);
+        test::add_column(cells, 0, 30, 33, bottle, Basis::half_enclosed);
         test::add_column(cells, 0, 33 + gap, 40, bottle, Basis::surface);
-        test::add_column(cells, 5, 10, 12, bottle, Basis::two_votes);
-        test::add_column(cells, 6, 11, 20, bottle, Basis::two_votes);
+        test::add_column(cells, 5, 10, 12, bottle, Basis::half_enclosed);
+        test::add_column(cells, 6, 11, 20, bottle, Basis::half_enclosed);
         test::add_column(cells, 7, 19, 21, table, Basis::surface);
         return detached_claims(VolumeView(scene, cells, roles));
     };
@@ -242,7 +242,7 @@ TEST(FillLeaves, AreFewWhereLittleCanBeFilled) {
     std::size_t unseen = 0;
     for (std::uint64_t n = 0; n < scene.grids().leaves.size(); ++n)
         unseen += !uniformly_empty(state, scene.grids().leaves.leaf_at(n));
-    const auto leaves = leaves_to_fill(scene.grids(), fills, 2, true, 0);
+    const auto leaves = leaves_to_fill(scene.grids(), fills, 2, 0);
     EXPECT_GT(leaves.size(), 20u);
     EXPECT_LT(10 * leaves.size(), unseen);
     EXPECT_TRUE(std::ranges::is_sorted(leaves));
@@ -253,7 +253,7 @@ TEST(FillLeaves, AreFewWhereLittleCanBeFilled) {
 TEST(FillLeaves, AreNoneOfWallsAlone) {
     const test::Boxes boxes = test::Boxes::on_a_floor();
     const VoxelScene scene({}, boxes.cloud, boxes.label);
-    EXPECT_TRUE(leaves_to_fill(scene.grids(), {false, false, false}, 2, true, 0).empty());
+    EXPECT_TRUE(leaves_to_fill(scene.grids(), {false, false, false}, 2, 0).empty());
 }
 
 }  // namespace

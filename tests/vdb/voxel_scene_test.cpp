@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/voxel_scene.h"
 
+#include <map>
+
 #include "errors.h"
 #include "oracle/random_depth.h"
 #include "oracle/six_fill_oracle.h"
@@ -71,6 +73,8 @@ TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
         // Shells of small random boxes: they overlap, touch and leave gaps.
         std::vector<Vec3> points;
         std::vector<std::int32_t> label;
+        std::vector<std::uint8_t> sides;
+        std::map<std::array<int, 3>, std::array<int, 7>> sided;  // points by side, and all
         for (std::int32_t b = 0; b < 9; ++b) {
             int low[3], high[3];
             for (int a = 0; a < 3; ++a) {
@@ -85,11 +89,17 @@ TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
                         if (!shell || random.below(4) == 0) continue;
                         points.push_back({(x + 0.5) * 0.05, (y + 0.5) * 0.05, (z + 0.5) * 0.05});
                         label.push_back(random.below(20) == 0 ? -1 : b);
+                        sides.push_back(
+                            static_cast<std::uint8_t>(random.below(3) ? 0 : random.below(64)));
+                        auto& counts = sided[{x, y, z}];
+                        for (std::size_t side = 0; side < 6; ++side)
+                            counts[side] += sides.back() >> side & 1;
+                        ++counts[6];
                     }
                 }
             }
         }
-        VoxelScene scene({.voxel_m = 0.05}, cloud_of(points), label);
+        VoxelScene scene({.voxel_m = 0.05}, cloud_of(points), label, sides);
         const Intrinsics k{64, 48, 50, 50, 31.5, 23.5, 1000};
         std::vector<DepthFrame> frames;
         for (int n = 0; n < 5; ++n) frames.push_back(oracle::random_frame(random, k, 2));
@@ -123,19 +133,32 @@ TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
             };
             for (std::size_t n = 0; n < before.size(); ++n) {
                 const bool votes_here = before[n] == 1 && labels[n] >= 0 && labels[n] != 1;
-                dense.cell[dense.index(place(n))] = before[n] == 2 ? 1
-                                                    : votes_here
-                                                        ? static_cast<std::uint32_t>(labels[n]) + 3
-                                                    : before[n] == 0 ? 0
-                                                                     : 2;
+                std::uint32_t& cell = dense.cell[dense.index(place(n))];
+                cell = before[n] == 2   ? 1
+                       : votes_here     ? static_cast<std::uint32_t>(labels[n]) + 4
+                       : before[n] == 0 ? 0
+                                        : 2;
+                const auto v = static_cast<int>(n % 512);
+                const auto counts =
+                    sided.find({tiles.x[n / 512] + (v >> 6), tiles.y[n / 512] + (v >> 3 & 7),
+                                tiles.z[n / 512] + (v & 7)});
+                if (!votes_here || counts == sided.end()) continue;
+                const auto seen = [&](std::size_t side) {
+                    const int some = counts->second[side];
+                    return some > 0 && 4 * some >= counts->second[6];
+                };
+                for (std::size_t side = 0; side < 6; ++side)
+                    if (seen(side) && !seen(side ^ 1)) cell |= 1u << (16 + side);
             }
             std::uint64_t wrong = 0, completed = 0;
             for (std::size_t n = 0; n < before.size(); ++n) {
-                const std::int32_t expected =
+                const std::uint32_t word =
                     oracle::six_fill(dense, place(n), static_cast<int>(votes), columns);
-                completed += expected >= 0;
-                wrong += expected >= 0 ? after[n] != 3 || filled[n] != expected
-                                       : after[n] != before[n] || filled[n] != labels[n];
+                const bool is_filled = (word >> 23 & 1) != 0;
+                completed += is_filled;
+                wrong += is_filled ? after[n] != 3 ||
+                                         filled[n] != static_cast<std::int32_t>(word & 65535) - 1
+                                   : after[n] != before[n] || filled[n] != labels[n];
             }
             EXPECT_EQ(wrong, 0u) << "seed " << seed << ", votes " << votes;
             EXPECT_GT(completed, 0u) << "seed " << seed << ", votes " << votes;
@@ -223,11 +246,12 @@ TEST_P(Scenes, LabelsMayComeLater) {
     VoxelScene later({}, cloud_of(points));
     const Tiles tiles = known.tiles(true);
     EXPECT_EQ(later.primitives(tiles), std::vector<std::int32_t>(tiles.size() * 512, -1));
-    later.set_labels(cloud_of(points), label);
+    later.set_labels(cloud_of(points), label, std::vector<std::uint8_t>(points.size(), 5));
     EXPECT_EQ(later.tiles(true).x, tiles.x);
     EXPECT_EQ(later.states(tiles), known.states(tiles));
     EXPECT_EQ(later.primitives(tiles), known.primitives(tiles));
     EXPECT_THROW(later.set_labels(cloud_of(points), std::vector<std::int32_t>{1}), Error);
+    EXPECT_THROW(later.set_labels(cloud_of(points), label, std::vector<std::uint8_t>{1}), Error);
 }
 
 // A scene ten times as long with the same views: the same leaves go to the device.

@@ -15,6 +15,7 @@
 #include "lab/evaluation/groupings.h"
 #include "lab/evaluation/kind_score.h"
 #include "lab/evaluation/measures.h"
+#include "lab/evaluation/ray_ends.h"
 #include "lab/evaluation/room.h"
 #include "lab/evaluation/segmentation_picture.h"
 #include "lab/evaluation/tables.h"
@@ -30,7 +31,7 @@ struct EvaluateArguments {
     std::string backend = "auto", out = "evaluation";
     evaluation::RoomOptions options;
     unsigned seeds = 8, first = 1;
-    bool groupings = false, fit_joints = false, bases = false, measures = false;
+    bool groupings = false, fit_joints = false, bases = false, rays = false, measures = false;
     bool frames_of_things = false;   // of --measures: depth frames, not clean points
     std::string thing;               // of --measures: those whose names begin so
     std::vector<std::string> kinds;  // of rooms; none: those of --furniture
@@ -123,6 +124,24 @@ void judge_kinds(EvaluateArguments& a) {
     keep(a, "kinds.csv", evaluation::kinds_csv(scores));
 }
 
+void count_rays(EvaluateArguments& a) {
+    evaluation::RayEndCounts counts;
+    for (const std::string& kind : scenes::kinds()) {
+        for (unsigned n = 0; n < a.seeds; ++n) {
+            for (const scenes::ScanKind scan :
+                 {scenes::ScanKind::walk, scenes::ScanKind::sparse, scenes::ScanKind::laser,
+                  scenes::ScanKind::single}) {
+                a.scan.kind = scan;
+                a.scan.seed = a.first + n;
+                print_to(stderr, "%s %u of %u, %s\n", kind.c_str(), n + 1, a.seeds,
+                         scenes::to_string(scan));
+                evaluation::add_rays(kind, a.scan, a.options.parse, counts);
+            }
+        }
+    }
+    tell(a, "rays.txt", evaluation::table_of(counts));
+}
+
 void judge_measures(EvaluateArguments& a) {
     const evaluation::MeasureOptions options{.frames = a.frames_of_things,
                                              .parse = a.options.parse};
@@ -154,6 +173,8 @@ int run(EvaluateArguments& a) {
             print_weights(a);
         } else if (a.measures) {
             judge_measures(a);
+        } else if (a.rays) {
+            count_rays(a);
         } else if (!a.kinds.empty()) {
             judge_kinds(a);
         } else if (a.groupings) {
@@ -198,13 +219,22 @@ Command add_evaluate(CLI::App& app) {
                                             "Instead, judge each rule of completion: the share of "
                                             "what it takes to be solid that is")
                                    ->excludes(groupings);
+    CLI::Option* const rays =
+        app.add_flag(
+               "--rays", a->rays,
+               "Instead, how often what nobody saw is solid, by what its six rays end at; rooms "
+               "of all families, each as many as --seeds, scanned in four ways")
+            ->excludes(groupings)
+            ->excludes(fit_joints)
+            ->excludes(bases);
     CLI::Option* const measures =
         app.add_flag("--measures", a->measures,
                      "Mass and barrier of 32 things of known measures instead, from clean points 4 "
                      "mm apart, each at as many places as --seeds")
             ->excludes(groupings)
             ->excludes(fit_joints)
-            ->excludes(bases);
+            ->excludes(bases)
+            ->excludes(rays);
     app.add_flag("--from-frames", a->frames_of_things,
                  "From the depth camera's noisy frames instead, with --measures")
         ->needs(measures);
@@ -224,6 +254,7 @@ Command add_evaluate(CLI::App& app) {
             ->excludes(groupings)
             ->excludes(fit_joints)
             ->excludes(measures)
+            ->excludes(rays)
             ->excludes(single);
     add_scan(app, a->scan.kind)->needs(kinds);
     app.add_option("--tilt", a->options.room.tilt_deg,
@@ -236,6 +267,7 @@ Command add_evaluate(CLI::App& app) {
                    "auto (a real GPU if there is one, else native), native, opencl, vulkan")
         ->capture_default_str();
     return [a, frames, voxel] {
+        if (a->rays && !*voxel) a->options.parse.voxel_m = ParseOptions{}.voxel_m;
         if (!a->kinds.empty()) {
             if (std::find(a->kinds.begin(), a->kinds.end(), "all") != a->kinds.end())
                 a->kinds = scenes::kinds();

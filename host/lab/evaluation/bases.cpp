@@ -10,7 +10,7 @@ namespace topple::evaluation {
 namespace {
 
 constexpr std::array<const char*, basis_count> names{
-    "surface", "three_votes", "two_votes", "column", "stand", "leg", "gap"};
+    "surface", "enclosed", "half_enclosed", "unlikely", "stand", "leg", "gap"};
 
 }  // namespace
 

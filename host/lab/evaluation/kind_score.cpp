@@ -7,7 +7,6 @@
 #include <set>
 
 #include "lab/rooms/kinds.h"
-#include "lab/temporary_folder.h"
 
 namespace topple::evaluation {
 namespace {
@@ -217,14 +216,19 @@ KindScore judge_kind(const scenes::World& world, const scenes::Scan& scan, const
     return Judge(world, scan, scene).score();
 }
 
+ScannedKind::ScannedKind(const std::string& kind, const scenes::ScanOptions& options)
+    : world(scenes::make_world(kind, options.seed)), scan(scenes::scan(world, options)) {
+    scenes::write_scan(folder_.path(), world, scan, options, kind);
+}
+
+std::filesystem::path ScannedKind::input() const {
+    return scan.frames.empty() ? folder_.path() / "cloud.ply" : folder_.path();
+}
+
 KindScore scan_and_judge(const std::string& kind, const scenes::ScanOptions& scan_options,
                          const ParseOptions& parse_options) {
-    const scenes::World world = scenes::make_world(kind, scan_options.seed);
-    const scenes::Scan scan = scenes::scan(world, scan_options);
-    const scenes::TemporaryFolder folder("topple_kind");
-    scenes::write_scan(folder.path(), world, scan, scan_options, kind);
-    const auto input = scan.frames.empty() ? folder.path() / "cloud.ply" : folder.path();
-    KindScore out = judge_kind(world, scan, parse(input, parse_options).scene);
+    const ScannedKind room(kind, scan_options);
+    KindScore out = judge_kind(room.world, room.scan, parse(room.input(), parse_options).scene);
     out.kind = kind;
     out.seed = scan_options.seed;
     return out;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "lab/scan/scan.h"
+#include "lab/temporary_folder.h"
 #include "topple/parse.h"
 
 // Parses of scans of the families of rooms (lab/rooms/kinds.h), judged by what moves as one.
@@ -35,7 +37,20 @@ struct KindScore {
 };
 KindScore judge_kind(const scenes::World& world, const scenes::Scan& scan, const Scene& scene);
 
-// Makes the room and the scan of a seed, parses and judges it. Throws what these throw.
+// The room and the scan of a seed, in files for as long as this is there. Throws what these throw.
+class ScannedKind {
+  public:
+    ScannedKind(const std::string& kind, const scenes::ScanOptions& options);
+    std::filesystem::path input() const;
+
+    const scenes::World world;
+    const scenes::Scan scan;
+
+  private:
+    scenes::TemporaryFolder folder_{"topple_kind"};
+};
+
+// Makes, parses and judges one.
 KindScore scan_and_judge(const std::string& kind, const scenes::ScanOptions& scan_options,
                          const ParseOptions& parse_options);
 

@@ -7,6 +7,7 @@
 #include "io/file_writer.h"
 #include "lab/scan/files.h"
 #include "lab/scan/scan.h"
+#include "lab/solids/ground_truth.h"
 
 namespace topple::scenes {
 namespace {
@@ -182,6 +183,7 @@ void write_scan(const std::filesystem::path& folder, const World& world, const S
                                {"gravity", {rounded(-m[2]), rounded(-m[6]), rounded(-m[10])}},
                                {"world_to_scan", rows},
                                {"box_frame", "world"},
+                               {"parts", parts_json(world)},
                                {"objects", objects_json(world, scan)}};
     io::write_file(folder / "truth.json", truth.dump(1) + "\n");
 }

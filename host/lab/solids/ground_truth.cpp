@@ -19,14 +19,19 @@ json part_json(const Part& p) {
     return out;
 }
 
-void write_truth(const std::filesystem::path& path, const World& world) {
-    json parts = json::array(), objects = json::array();
+json parts_json(const World& world) {
+    json parts = json::array();
     for (std::size_t k = 0; k < world.parts.size(); ++k) {
         const Part& p = world.parts[k];
         parts.push_back(part_json(p));
         parts.back()["id"] = k;
         parts.back()["object"] = p.object;
     }
+    return parts;
+}
+
+void write_truth(const std::filesystem::path& path, const World& world) {
+    json objects = json::array();
     for (std::size_t k = 0; k < world.objects.size(); ++k) {
         objects.push_back(
             {{"id", k}, {"name", world.objects[k].name}, {"where", world.objects[k].where}});
@@ -35,7 +40,7 @@ void write_truth(const std::filesystem::path& path, const World& world) {
     const json root{{"seed", world.seed},
                     {"tilt", {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}}},
                     {"room", world.room},
-                    {"parts", parts},
+                    {"parts", parts_json(world)},
                     {"objects", objects},
                     {"fixed", world.fixed},
                     {"support", world.support}};

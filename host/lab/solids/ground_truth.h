@@ -14,7 +14,8 @@ namespace topple::scenes {
 // revolved. Throws Error(input) where it can't be written.
 void write_truth(const std::filesystem::path& path, const World& world);
 
-// A part as it stands there, but for its ids.
+// The parts as they stand there, and one but for its ids.
+nlohmann::json parts_json(const World& world);
 nlohmann::json part_json(const Part& part);
 
 }  // namespace topple::scenes

@@ -57,7 +57,7 @@ TEST(Basis, IsAProbability) {
         EXPECT_GT(p, 0.5);
         EXPECT_LT(p, 1.0);
     }
-    EXPECT_GT(probability_solid(Basis::three_votes), probability_solid(Basis::two_votes));
+    EXPECT_GT(probability_solid(Basis::enclosed), probability_solid(Basis::half_enclosed));
 }
 
 }  // namespace

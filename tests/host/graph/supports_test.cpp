@@ -111,12 +111,12 @@ TEST(FalseFeet, WhatWasFilledBelowWhatCarriesAThingIsNotItsOwn) {
     SolidCells cells;
     cells.voxel_m = 0.02;
     test::add_column(cells, 0, 0, 1, floor, Basis::surface);
-    test::add_column(cells, 0, 1, 2, cup, Basis::two_votes);
-    test::add_column(cells, 0, 20, 25, bed, Basis::two_votes);
+    test::add_column(cells, 0, 1, 2, cup, Basis::half_enclosed);
+    test::add_column(cells, 0, 20, 25, bed, Basis::half_enclosed);
     test::add_column(cells, 0, 25, 30, cup, Basis::surface);
     test::add_column(cells, 1, 26, 29, handle, Basis::surface);
-    test::add_column(cells, 2, 0, 1, floor, Basis::two_votes);
-    test::add_column(cells, 2, 1, 3, floor, Basis::two_votes);
+    test::add_column(cells, 2, 0, 1, floor, Basis::half_enclosed);
+    test::add_column(cells, 2, 1, 3, floor, Basis::half_enclosed);
     BoundaryCells boundary;
     for (const auto& [k, primitive] : {std::pair{1, cup}, {25, cup}, {30, cup}}) {
         boundary.i.push_back(0);

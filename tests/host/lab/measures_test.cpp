@@ -136,17 +136,17 @@ TEST(Bases, AreJudgedByTheTruth) {
         cells.basis.push_back(basis);
     };
     add(-2, Basis::surface);
-    for (std::int32_t k = 5; k < 10; ++k) add(k, Basis::two_votes);
-    add(30, Basis::two_votes);
-    add(40, Basis::column);
+    for (std::int32_t k = 5; k < 10; ++k) add(k, Basis::half_enclosed);
+    add(30, Basis::half_enclosed);
+    add(40, Basis::gap);
     BasisCounts counts;
     add_voxels(world, SolidScene(std::move(cells), {Role::none}), {.voxel_m = 0.02}, counts);
     const auto of = [&](Basis b) { return counts.basis[static_cast<std::size_t>(b)]; };
     EXPECT_EQ(of(Basis::surface).of, 0u);
-    EXPECT_EQ(of(Basis::two_votes).of, 6u);
-    EXPECT_EQ(of(Basis::two_votes).right, 5u);
-    EXPECT_EQ(of(Basis::column).of, 1u);
-    EXPECT_EQ(of(Basis::column).right, 0u);
+    EXPECT_EQ(of(Basis::half_enclosed).of, 6u);
+    EXPECT_EQ(of(Basis::half_enclosed).right, 5u);
+    EXPECT_EQ(of(Basis::gap).of, 1u);
+    EXPECT_EQ(of(Basis::gap).right, 0u);
     EXPECT_NE(table_of(counts).find("0.8333"), std::string::npos);
 }
 

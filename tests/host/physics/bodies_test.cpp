@@ -27,7 +27,7 @@ SolidCells random_cells(std::uint64_t seed, std::int32_t side, std::int32_t labe
                 const auto label = static_cast<std::int32_t>(
                     random.word() % static_cast<std::uint32_t>(labels + 1));
                 cells.primitive.push_back(label - 1);
-                cells.basis.push_back(Basis::two_votes);
+                cells.basis.push_back(Basis::half_enclosed);
             }
         }
     }
@@ -133,7 +133,7 @@ TEST(VoxelHulls, SupportEveryCorner) {
                 flat.j.push_back(cells.j[n]);
                 flat.k.push_back(4);
                 flat.primitive.push_back(0);
-                flat.basis.push_back(Basis::two_votes);
+                flat.basis.push_back(Basis::half_enclosed);
             }
             cells = flat;
         }

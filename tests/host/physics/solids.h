@@ -40,7 +40,7 @@ inline SolidCells voxelise(const std::vector<Solid>& solids, const Vec3& low, co
                     cells.j.push_back(j);
                     cells.k.push_back(k);
                     cells.primitive.push_back(solid.label);
-                    cells.basis.push_back(Basis::two_votes);
+                    cells.basis.push_back(Basis::half_enclosed);
                     break;
                 }
             }

@@ -62,7 +62,7 @@ class Carving : public testing::Test {
     SpaceCarving::Carved carved(device::Device& device, const Observation& input) {
         SpaceCarving carving(device, input, frame_);
         const std::vector<std::int32_t> label(input.cloud.size(), 3);
-        return carving.finish(label, {}, stage_);
+        return carving.finish({label, {}}, {}, stage_);
     }
 
     vdb::VoxelFrame frame_{voxel_m, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}};

@@ -100,8 +100,7 @@ inline Scanned scan(const std::vector<Box>& boxes, double voxel_m, double spacin
                     const Eigen::Vector3d middle =
                         voxel_m * Eigen::Vector3d(i + .5, j + .5, k + .5);
                     if (boxes[b].holds(middle))
-                        cells.try_emplace({i, j, k}, static_cast<std::int32_t>(b),
-                                          Basis::three_votes);
+                        cells.try_emplace({i, j, k}, static_cast<std::int32_t>(b), Basis::enclosed);
                 }
             }
         }
