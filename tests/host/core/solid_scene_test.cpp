@@ -50,11 +50,12 @@ TEST(SolidScene, RefusesWhatIsNoScene) {
     EXPECT_THROW(SolidScene(std::move(short_of_one), {Role::none}), Error);
 }
 
-// More votes are surer, and nothing is certain, nor as good as chance.
+// What is more enclosed is surer, and nothing is certain, nor, but for what is unlikely, as good as
+// chance.
 TEST(Basis, IsAProbability) {
     for (std::uint8_t b = 0; b < basis_count; ++b) {
         const double p = probability_solid(static_cast<Basis>(b));
-        EXPECT_GT(p, 0.5);
+        EXPECT_GT(p, static_cast<Basis>(b) == Basis::unlikely ? 0.0 : 0.5);
         EXPECT_LT(p, 1.0);
     }
     EXPECT_GT(probability_solid(Basis::enclosed), probability_solid(Basis::half_enclosed));
