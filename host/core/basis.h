@@ -12,7 +12,7 @@ enum class Basis : std::uint8_t {
     surface,        // points lie in it, or a map says so
     enclosed,       // what its six rays end at makes that likely (vdb/fill_chance.h)
     half_enclosed,  // less so
-    unlikely,       // rays meet its primitive, but end at what makes it less likely than not
+    unlikely,       // little, though rays meet its primitive: it goes once joints are judged
     stand,          // it was filled with what stands on its primitive, which goes on below that
     leg,            // a slender part ends hidden below a wider one
     gap,            // nobody saw into the gap between two primitives

@@ -248,7 +248,6 @@ void take_likely(Volume& volume) {
     volume.solids = std::make_shared<const SolidScene>(std::move(cells), before.roles(),
                                                        before.strays(), boundary.only(kept));
     volume.likely.clear();
-    volume.scene->remove_field(fraction_field);
     store_fractions(*volume.solids, *volume.scene);
 }
 
@@ -328,7 +327,6 @@ Volume fill_volume(device::Device& device, const Observation& input, const Surfa
         cells.primitive = numbered(cells.primitive, out.number);
         out.solids = solid_scene(device, input, geometry, gaps, options.ledges, out,
                                  std::move(cells), detail);
-        if (detail == SolidDetail::within_voxels) store_fractions(*out.solids, *out.scene);
     });
     return out;
 }

@@ -56,7 +56,7 @@ void clear_lost_labels(const SolidScene& before, const SolidScene& now, vdb::Vox
 // What is taken away by hand: voxels that are empty, or others'; primitives have other numbers.
 void take_away(const TakenAway& taken, vdb::VoxelScene& scene);
 
-// Adds the field of how much of each voxel is solid.
+// Adds the field of how much of each voxel is solid, which the scene does not have yet.
 void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume);
 
 // Labels by primitive as labels by solid.

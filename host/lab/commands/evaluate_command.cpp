@@ -267,13 +267,13 @@ Command add_evaluate(CLI::App& app) {
                    "auto (a real GPU if there is one, else native), native, opencl, vulkan")
         ->capture_default_str();
     return [a, frames, voxel] {
-        if (a->rays && !*voxel) a->options.parse.voxel_m = ParseOptions{}.voxel_m;
+        // The edge that fits the scan, as a parse chooses it.
+        if ((a->rays || !a->kinds.empty()) && !*voxel)
+            a->options.parse.voxel_m = ParseOptions{}.voxel_m;
         if (!a->kinds.empty()) {
             if (std::find(a->kinds.begin(), a->kinds.end(), "all") != a->kinds.end())
                 a->kinds = scenes::kinds();
             if (*frames) a->scan.frames = a->options.camera.frames;
-            // The edge that fits the scan, as a parse chooses it.
-            if (!*voxel) a->options.parse.voxel_m = ParseOptions{}.voxel_m;
         }
         return run(*a);
     };

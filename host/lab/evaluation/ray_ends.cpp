@@ -49,20 +49,6 @@ std::string row_of(const RayEndCounts& counts, bool agree, unsigned above) {
     return out;
 }
 
-enum class Place { room, solid, free };
-Place place_of(const scenes::World& world, const Vec3& p) {
-    Place out = Place::free;
-    for (const scenes::Part& part : world.parts) {
-        const auto [low, high] = part.bounds();
-        bool near = true;
-        for (std::size_t a = 0; a < 3; ++a) near = near && p[a] >= low[a] && p[a] <= high[a];
-        if (!near || !part.inside(p)) continue;
-        if (part.object == 0) return Place::room;
-        out = Place::solid;
-    }
-    return out;
-}
-
 }  // namespace
 
 void add_rays(const std::string& kind, const scenes::ScanOptions& scan_options,
@@ -85,10 +71,11 @@ void add_rays(const std::string& kind, const scenes::ScanOptions& scan_options,
     for (std::size_t n = 0; n < rays.size(); n += step) {
         Vec3 center;
         for (std::size_t a = 0; a < 3; ++a) center[a] = (rays[n].at[a] + 0.5) * frame.voxel_m;
-        const Place place =
-            place_of(room.world, scenes::moved(world_from_scan, frame.input_of(center)));
-        if (place == Place::room) continue;
-        add({place == Place::solid ? 1.0 : 0.0, 1}, counts.ends[rays[n].ends]);
+        const auto [distance, part] =
+            room.world.distance(scenes::moved(world_from_scan, frame.input_of(center)));
+        const bool solid = distance <= 0;
+        if (solid && room.world.parts[part].object == 0) continue;
+        add({solid ? 1.0 : 0.0, 1}, counts.ends[rays[n].ends]);
     }
     ++counts.rooms;
 }
