@@ -10,7 +10,7 @@ namespace {
 // A block and the table that holds its cells.
 struct BlockPlace {
     const CellTable::Block* block;
-    const CellTable* table;
+    CellTable* table;
 };
 
 // Blocks' keys hold their indices where cells' do.
@@ -34,7 +34,7 @@ std::size_t end_of_group(const std::vector<BlockPlace>& blocks, std::size_t begi
 
 // Writes the cells of blocks [begin, end), which share their x, by ascending key.
 void write_slab(const std::vector<BlockPlace>& blocks, std::size_t begin, std::size_t end,
-                const CellSums** out) {
+                CellSums** out) {
     for (std::size_t x = 0; x < 4; ++x) {
         for (std::size_t column = begin, next = begin; column < end; column = next) {
             next = end_of_group(blocks, column, end, y_bits);
@@ -107,16 +107,17 @@ std::uint32_t CellTable::place_of(std::uint64_t key) {
     return place - 1;
 }
 
-void CellTable::add(std::span<const CellSums> sums, std::span<const std::uint32_t> which) {
+template <class Sums>
+void CellTable::add(const Sums& sums, std::span<const std::uint32_t> which) {
     constexpr std::size_t at_once = 32;
     std::array<std::uint32_t, at_once> place{};
     for (; !which.empty(); which = which.subspan(std::min(at_once, which.size()))) {
         const auto some = which.first(std::min(at_once, which.size()));
         for (std::size_t n = 0; n < some.size(); ++n) {
-            place[n] = place_of(sums[some[n]].key);
+            place[n] = place_of(sums(some[n]).key);
             __builtin_prefetch(&cells_[place[n]]);
         }
-        for (std::size_t n = 0; n < some.size(); ++n) cells_[place[n]].add(sums[some[n]]);
+        for (std::size_t n = 0; n < some.size(); ++n) cells_[place[n]].add(sums(some[n]));
     }
 }
 
@@ -130,20 +131,48 @@ void CellTable::grow() {
     }
 }
 
-void CellTables::add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool,
-                     std::size_t most_bytes) {
-    std::vector<std::array<std::vector<std::uint32_t>, shard_count>> of(parts.size());
+namespace {
+
+const CellSums& sums_of(const CellSums& cell) {
+    return cell;
+}
+const CellSums& sums_of(const CellSums* cell) {
+    return *cell;
+}
+
+template <class Part>
+void add_parts(CellTables& tables, std::span<const Part> parts, ThreadPool& pool,
+               std::size_t most_bytes) {
+    constexpr std::size_t count = CellTables::shard_count;
+    std::vector<std::array<std::vector<std::uint32_t>, count>> of(parts.size());
     pool.each(parts.size(), 1, [&](std::size_t p) {
         for (std::size_t n = 0; n < parts[p].size(); ++n)
-            of[p][shard_of(parts[p][n].key)].push_back(static_cast<std::uint32_t>(n));
+            of[p][CellTables::shard_of(sums_of(parts[p][n]).key)].push_back(
+                static_cast<std::uint32_t>(n));
     });
-    std::atomic<std::size_t> held = bytes();
-    pool.each(shard_count, 1, [&](std::size_t shard) {
+    std::atomic<std::size_t> held = tables.bytes();
+    pool.each(count, 1, [&](std::size_t shard) {
         if (held > most_bytes) return;
-        const std::size_t before = shards[shard].bytes();
-        for (std::size_t p = 0; p < parts.size(); ++p) shards[shard].add(parts[p], of[p][shard]);
-        held += shards[shard].bytes() - before;
+        CellTable& table = tables.shards[shard];
+        const std::size_t before = table.bytes();
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            const auto sums = [&](std::uint32_t n) -> const CellSums& {
+                return sums_of(parts[p][n]);
+            };
+            table.add(sums, of[p][shard]);
+        }
+        held += table.bytes() - before;
     });
+}
+
+}  // namespace
+
+void CellTables::add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool,
+                     std::size_t most_bytes) {
+    add_parts(*this, parts, pool, most_bytes);
+}
+void CellTables::add(std::span<const std::span<CellSums* const>> parts, ThreadPool& pool) {
+    add_parts(*this, parts, pool, SIZE_MAX);
 }
 
 void NeighbourSums::add(const RowReadings& row, const std::uint8_t* rgb, std::uint32_t frame,
@@ -188,15 +217,21 @@ std::size_t CellTable::bytes() const {
            2 * cells_.size() * sizeof(CellSums);
 }
 
+void CellTable::drop_index() {
+    slots_ = {};
+    cubes_ = {};
+    blocks_ = {};
+}
+
 std::size_t CellTables::bytes() const {
     std::size_t sum = 0;
     for (const CellTable& table : shards) sum += table.bytes();
     return sum;
 }
 
-CellPlaces CellTables::sorted(ThreadPool& pool) const {
+CellPlaces CellTables::sorted(ThreadPool& pool) {
     std::vector<BlockPlace> blocks;
-    for (const CellTable& table : shards) {
+    for (CellTable& table : shards) {
         for (const CellTable::Block& block : table.blocks()) blocks.push_back({&block, &table});
     }
     std::sort(blocks.begin(), blocks.end(),

@@ -82,11 +82,15 @@ class CellTable {
     static std::uint64_t cube_of(std::uint64_t key) {
         return key >> 5 & 0xFFFFu * (1 + (1ull << 21) + (1ull << 42));
     }
-    void add(std::span<const CellSums> sums, std::span<const std::uint32_t> which);
-    const Grown<CellSums>& cells() const { return cells_; }
+    // sums: of `which`, by place, the sum there.
+    template <class Sums>
+    void add(const Sums& sums, std::span<const std::uint32_t> which);
+    Grown<CellSums>& cells() { return cells_; }
     const Grown<Block>& blocks() const { return blocks_; }
-    // That it holds, and that sorting its cells takes besides.
+    // That it holds, and that cleaning its cells takes besides.
     std::size_t bytes() const;
+    // Leaves the cells alone: none is found any more.
+    void drop_index();
 
   private:
     struct Cube {
@@ -110,9 +114,8 @@ class CellTable {
     std::size_t last_ = 0;  // the cube found last
 };
 
-using SortedCells = boost::container::vector<CellSums, std::allocator<CellSums>>;
 // Where cells lie in their tables.
-using CellPlaces = boost::container::vector<const CellSums*>;
+using CellPlaces = boost::container::vector<CellSums*>;
 
 // Cells shared out over tables by their cubes, so that several threads may fill them, one per
 // table, and that neighbours are near one another in memory.
@@ -127,8 +130,9 @@ struct CellTables {
     // most_bytes.
     void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool,
              std::size_t most_bytes = SIZE_MAX);
+    void add(std::span<const std::span<CellSums* const>> parts, ThreadPool& pool);
     // All cells by ascending key; as long as nothing is added.
-    CellPlaces sorted(ThreadPool& pool) const;
+    CellPlaces sorted(ThreadPool& pool);
     std::size_t bytes() const;
 };
 
@@ -166,14 +170,16 @@ struct FrameFusion::Cells {
     std::array<std::uint64_t, block_count> outside{};  // readings beyond the grid's reach
 };
 
-// Fused cells to clean: sorted by key.
+// Fused cells to clean, where they lie: a copy of millions of them would be most of the memory that
+// a parse takes.
 struct FusedCells {
-    double cell_m = 0;
-    SortedCells cells;
+    FusedCells(CellTables tables, double cell_m, ThreadPool& pool);
+    double cell_m;
+    CellTables tables;  // without their index
+    CellPlaces cells;   // those that are left, sorted by key
 };
-// Those that are no stray readings, of so many frames. Of noisy frames a fraction is left: the rest
-// is not copied.
-SortedCells strong_cells(const CellPlaces& cells, std::size_t frames, ThreadPool& pool);
+// Drops stray readings, of so many frames.
+void drop_strays(FusedCells& fused, std::size_t frames, ThreadPool& pool);
 // Drops cells that the frames deny.
 void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool);
 // One step of moving least squares, then bins anew: readings spread to both sides of a surface by

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -21,47 +23,52 @@ struct Around {
     std::uint64_t cells = 0, count = 0, weight = 0;
 };
 
-// Calls visit(cell, around) for each of n cells, cell(i), by ascending key. Each of the nine
-// columns of three is a run of sorted cells whose ends only move up, and the difference of two
-// running sums is what it holds.
-template <class Cell, class Visit>
-void visit_surroundings(std::size_t n, ThreadPool& pool, const Cell& cell, const Visit& visit) {
-    // Behind the last come more keys than a run has, above all.
-    std::vector<std::uint64_t> key(n + 3, ~std::uint64_t{0}), count(n + 1), weight(n + 1);
-    pool.each(n, fused_chunk, [&](std::size_t i) {
-        const CellSums& at = cell(i);
-        key[i] = at.key;
-        count[i + 1] = at.count;
-        weight[i + 1] = at.weight;
-    });
-    std::partial_sum(count.begin(), count.end(), count.begin());
-    std::partial_sum(weight.begin(), weight.end(), weight.begin());
-    pool.run(n, fused_chunk, [&](std::uint64_t first, std::uint64_t last) {
+// Calls visit(i, around) for each cell, by ascending key. Each of the nine columns of three is a
+// run of sorted cells whose ends only move up, and the difference of two running sums is what it
+// holds.
+template <class Visit>
+void visit_surroundings(const CellPlaces& cells, ThreadPool& pool, const Visit& visit) {
+    constexpr std::size_t chunk = std::size_t{1} << 17;
+    constexpr std::uint64_t furthest = (1ull << key_shift[0]) + (1ull << key_shift[1]) + 1;
+    const auto first_at = [&](std::uint64_t key) {
+        return static_cast<std::size_t>(
+            std::ranges::lower_bound(cells, key, {}, [](const CellSums* at) { return at->key; }) -
+            cells.begin());
+    };
+    pool.each((cells.size() + chunk - 1) / chunk, 1, [&](std::size_t c) {
+        const std::size_t first = c * chunk, last = std::min(first + chunk, cells.size());
+        // What lies around these cells; behind it come more keys than a run has, above all.
+        const std::size_t from = first_at(cells[first]->key - furthest),
+                          n = first_at(cells[last - 1]->key + furthest + 1) - from;
+        std::vector<std::uint64_t> key(n + 3, ~std::uint64_t{0}), count(n + 1), weight(n + 1);
+        for (std::size_t i = 0; i < n; ++i) {
+            const CellSums& at = *cells[from + i];
+            key[i] = at.key;
+            count[i + 1] = count[i] + at.count;
+            weight[i + 1] = weight[i] + at.weight;
+        }
         std::array<std::uint64_t, 9> lowest{};  // of each column, relative to the cell's key
         std::array<std::size_t, 9> lo{};
-        for (std::size_t c = 0; c < 9; ++c) {
-            lowest[c] = ((c / 3) << key_shift[0]) + ((c % 3) << key_shift[1]) -
-                        ((1ull << key_shift[0]) + (1ull << key_shift[1]) + 1);
-            lo[c] = static_cast<std::size_t>(
-                std::lower_bound(key.begin(), key.end() - 3, key[first] + lowest[c]) - key.begin());
-        }
-        for (std::uint64_t i = first; i < last; ++i) {
+        for (std::size_t column = 0; column < 9; ++column)
+            lowest[column] =
+                ((column / 3) << key_shift[0]) + ((column % 3) << key_shift[1]) - furthest;
+        for (std::size_t i = first - from; i < last - from; ++i) {
             Around around;
-            for (std::size_t c = 0; c < 9; ++c) {
+            for (std::size_t column = 0; column < 9; ++column) {
                 // Mostly one or two on; which of them no branch foretells.
-                const std::uint64_t low = key[i] + lowest[c];
-                std::size_t at = lo[c];
+                const std::uint64_t low = key[i] + lowest[column];
+                std::size_t at = lo[column];
                 at += key[at] < low;
                 at += key[at] < low;
                 while (key[at] < low) ++at;
-                lo[c] = at;
+                lo[column] = at;
                 const std::size_t end =
                     at + (key[at] < low + 3) + (key[at + 1] < low + 3) + (key[at + 2] < low + 3);
                 around.cells += end - at;
                 around.count += count[end] - count[at];
                 around.weight += weight[end] - weight[at];
             }
-            visit(static_cast<std::size_t>(i), around);
+            visit(from + i, around);
         }
     });
 }
@@ -88,7 +95,7 @@ CellGrid grid_of(const FusedCells& fused, ThreadPool& pool) {
     grid.cell_m = fused.cell_m;
     grid.resize(fused.cells.size(), false);
     pool.each(fused.cells.size(), fused_chunk, [&](std::size_t i) {
-        const CellSums& cell = fused.cells[i];
+        const CellSums& cell = *fused.cells[i];
         const std::array<std::int32_t*, 3> index{&grid.x[i], &grid.y[i], &grid.z[i]};
         for (std::size_t a = 0; a < 3; ++a) {
             *index[a] = static_cast<std::int32_t>(index_in(cell.key, a) - key_bias);
@@ -118,15 +125,94 @@ void move_to(CellSums& cell, const std::array<double, 3>& at) {
     cell.key = key_of(index);
 }
 
-// Moves the cells `which` onto the planes fitted in the grid of one level, whose cell is cell_of
-// for each. A plane is fitted at the mean of a level's cell and serves all that it was made from:
-// that mean lies nearer the surface than its outer layers do, and there are far fewer.
-void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
-                   const std::vector<std::uint32_t>& which,
-                   const std::vector<std::uint32_t>& cell_of, const std::vector<float>& sigma,
-                   device::Device& device, ThreadPool& pool) {
+// Calls use(from, to) for each column of two grids.
+template <class Use>
+void each_column(const CellGrid& from, CellGrid& to, const Use& use) {
+    use(from.x, to.x);
+    use(from.y, to.y);
+    use(from.z, to.z);
+    use(from.weight, to.weight);
+    for (std::size_t a = 0; a < from.mean.size(); ++a) use(from.mean[a], to.mean[a]);
+    for (std::size_t a = 0; a < from.spread.size(); ++a) use(from.spread[a], to.spread[a]);
+}
+
+// The cells [first, last) of a grid.
+CellGrid part_of(const CellGrid& grid, std::size_t first, std::size_t last) {
+    CellGrid out;
+    out.cell_m = grid.cell_m;
+    each_column(grid, out, [&](const auto& from, auto& to) {
+        if (from.empty()) return;
+        const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
+        to.assign(begin, begin + static_cast<std::ptrdiff_t>(last - first));
+    });
+    return out;
+}
+
+// Cells are worked on in slabs along x of about so many: tables of all of a scan's would be most of
+// the memory that a parse takes.
+constexpr std::size_t slab_cells = std::size_t{1} << 18;
+
+std::size_t first_cell_at(const CellGrid& grid, std::int32_t x) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(grid.x, x) - grid.x.begin());
+}
+// Where the slab ends that begins at the x of a cell; in whole coarser cells, for those.
+std::int32_t end_of_slab(const CellGrid& grid, std::size_t first) {
+    const std::size_t beyond = first + slab_cells;
+    if (beyond >= grid.size()) return grid.x.back() + 1;
+    return std::max(grid.x[beyond] & ~1, (grid.x[first] & ~1) + 2);
+}
+
+CellGrid coarsen_by_slabs(const CellGrid& grid, ThreadPool& pool,
+                          std::vector<std::uint32_t>& parent) {
+    CellGrid out;
+    out.cell_m = 2 * grid.cell_m;
+    parent.clear();
+    parent.reserve(grid.size());
+    // Of more than is needed nothing is touched; copies made in growing would be.
+    each_column(grid, out, [&](const auto&, auto& to) { to.reserve(grid.size()); });
+    for (std::size_t from = 0; from < grid.size();) {
+        const std::size_t to = first_cell_at(grid, end_of_slab(grid, from));
+        std::vector<std::uint32_t> within;
+        const CellGrid coarse = coarsen(part_of(grid, from, to), pool, within);
+        const auto before = static_cast<std::uint32_t>(out.size());
+        for (const std::uint32_t cell : within) parent.push_back(before + cell);
+        each_column(coarse, out, [](const auto& some, auto& all) {
+            all.insert(all.end(), some.begin(), some.end());
+        });
+        from = to;
+    }
+    return out;
+}
+
+// Cells to flatten, of one level.
+struct FlattenedLevel {
+    const CellGrid& grid;
+    double scale;                               // its cells' edge, in fused cells
+    const std::vector<std::uint32_t>& which;    // fused cells, ascending
+    const std::vector<std::uint32_t>& cell_of;  // of each fused cell, in the grid
+    const std::vector<float>& sigma;            // of each fused cell, metres
+
+    // The first of `which` whose cell has such an x, or a higher one.
+    std::size_t first_at(std::int32_t x) const {
+        const auto below = [&](std::uint32_t i) { return grid.x[cell_of[i]] < x; };
+        return static_cast<std::size_t>(std::ranges::partition_point(which, below) - which.begin());
+    }
+};
+
+// Moves the cells whose level's cells have x of [low, high) onto the planes fitted there. A plane
+// is fitted at the mean of a level's cell and serves all that it was made from: that mean lies
+// nearer the surface than its outer layers do, and there are far fewer.
+void flatten_slab(FusedCells& fused, const FlattenedLevel& level, std::int32_t low,
+                  std::int32_t high, device::Device& device, ThreadPool& pool) {
+    // What planes around a cell say counts, too (PlaneFitter::mean_offsets).
+    const std::size_t from = first_cell_at(level.grid, low - 2 * plane_radius),
+                      to = first_cell_at(level.grid, high + 2 * plane_radius);
+    const CellGrid grid = part_of(level.grid, from, to);
     std::vector<std::uint32_t> query_of(grid.size());
-    for (const std::uint32_t i : which) query_of[cell_of[i]] = 1;
+    for (std::size_t k = level.first_at(low - plane_radius),
+                     end = level.first_at(high + plane_radius);
+         k < end; ++k)
+        query_of[level.cell_of[level.which[k]] - from] = 1;
     PlaneQueries queries;
     for (std::size_t cell = 0; cell < grid.size(); ++cell) {
         if (query_of[cell] == 0) continue;
@@ -137,89 +223,59 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
     PlaneFitter fitter(device, grid, std::move(queries));
     const PlaneFit fit = fitter.fit({});
     const std::vector<float> offsets = fitter.mean_offsets(fit);
-    pool.each(which.size(), fused_chunk, [&](std::size_t k) {
-        CellSums& cell = fused.cells[which[k]];
-        const std::uint32_t home = cell_of[which[k]], q = query_of[home];
+    const std::size_t first = level.first_at(low);
+    pool.each(level.first_at(high) - first, fused_chunk, [&](std::size_t k) {
+        const std::uint32_t i = level.which[first + k];
+        CellSums& cell = *fused.cells[i];
+        const std::size_t home = level.cell_of[i] - from;
+        const std::uint32_t q = query_of[home];
         const std::array<std::int32_t, 3> index{grid.x[home], grid.y[home], grid.z[home]};
         const std::array<double, 3> at = mean_of(cell);
         double offset = offsets[q];  // from the cell to the surface, cells of the level
         for (std::size_t a = 0; a < 3; ++a) {
-            const double from_query = (at[a] - static_cast<double>(key_bias)) / scale -
+            const double from_query = (at[a] - static_cast<double>(key_bias)) / level.scale -
                                       (index[a] + 0.5 + double{grid.mean[a][home]});
             offset -= double{fit.normal[a][q]} * from_query;
         }
-        const double noise = sigma[which[k]] / grid.cell_m;
+        const double noise = level.sigma[i] / grid.cell_m;
         // An edge or a small thing is rougher than the readings' noise, and stays.
         if (fit.rms[q] > 1.5 * noise + 0.1 || std::abs(offset) > 3 * noise + 0.1) return;
         std::array<double, 3> moved = at;
-        for (std::size_t a = 0; a < 3; ++a) moved[a] += double{fit.normal[a][q]} * offset * scale;
+        for (std::size_t a = 0; a < 3; ++a)
+            moved[a] += double{fit.normal[a][q]} * offset * level.scale;
         move_to(cell, moved);
     });
+}
+
+void flatten_level(FusedCells& fused, const FlattenedLevel& level, device::Device& device,
+                   ThreadPool& pool) {
+    for (std::size_t k = 0; k < level.which.size();) {
+        const std::int32_t low = level.grid.x[level.cell_of[level.which[k]]];
+        const std::int32_t high = end_of_slab(level.grid, first_cell_at(level.grid, low));
+        flatten_slab(fused, level, low, high, device, pool);
+        k = level.first_at(high);
+    }
 }
 
 // Sorts the cells by key and sums up those of one key.
 void bin_anew(FusedCells& fused, ThreadPool& pool) {
     CellTables tables;
     constexpr std::size_t most_parts = 64;
-    std::vector<std::span<const CellSums>> parts;
-    const std::span<const CellSums> cells(fused.cells.data(), fused.cells.size());
+    std::vector<std::span<CellSums* const>> parts;
+    const std::span<CellSums* const> cells(fused.cells.data(), fused.cells.size());
     const std::size_t part = std::max(fused_chunk, cells.size() / most_parts + 1);
     for (std::size_t first = 0; first < cells.size(); first += part)
         parts.push_back(cells.subspan(first, std::min(part, cells.size() - first)));
     tables.add(parts, pool);
-    const CellPlaces sorted = tables.sorted(pool);
-    fused.cells = {};  // before there are others
-    fused.cells = SortedCells(sorted.size(), boost::container::default_init);
-    pool.each(sorted.size(), fused_chunk, [&](std::size_t i) { fused.cells[i] = *sorted[i]; });
+    fused = FusedCells(std::move(tables), fused.cell_m, pool);
 }
 
-}  // namespace
-
-SortedCells strong_cells(const CellPlaces& cells, std::size_t frames, ThreadPool& pool) {
-    std::vector<std::uint8_t> weak(cells.size());
-    const auto cell_at = [&](std::size_t i) -> const CellSums& { return *cells[i]; };
-    visit_surroundings(cells.size(), pool, cell_at, [&](std::size_t i, const Around& all) {
-        const CellSums& cell = *cells[i];
-        const auto around = static_cast<double>(all.cells - 1),
-                   count = static_cast<double>(all.count - cell.count),
-                   weight = static_cast<double>(all.weight - cell.weight);
-        const bool lonely = around == 0 && cell.count == 1 && frames > 1;
-        // Below a tenth of its surroundings by readings and by certainty.
-        const bool below = around > 0 && 10.0 * cell.count < count / around &&
-                           10.0 * static_cast<double>(cell.weight) < weight / around;
-        weak[i] = lonely || below;
-    });
-    std::vector<std::uint32_t> stay;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        if (weak[i] == 0) stay.push_back(static_cast<std::uint32_t>(i));
-    SortedCells strong(stay.size(), boost::container::default_init);
-    pool.each(stay.size(), fused_chunk, [&](std::size_t n) { strong[n] = *cells[stay[n]]; });
-    return strong;
-}
-
-void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool) {
-    const std::size_t n = fused.cells.size();
-    FusedPoints points;
-    for (std::vector<float>* values : {&points.x, &points.y, &points.z, &points.sigma})
-        values->resize(n);
-    pool.each(n, fused_chunk, [&](std::size_t i) {
-        const std::array<double, 3> at = mean_of(fused.cells[i]);
-        constexpr auto bias = static_cast<double>(key_bias);
-        points.x[i] = static_cast<float>((at[0] - bias) * fused.cell_m);
-        points.y[i] = static_cast<float>((at[1] - bias) * fused.cell_m);
-        points.z[i] = static_cast<float>((at[2] - bias) * fused.cell_m);
-        points.sigma[i] =
-            static_cast<float>(least_depth_sigma * std::sqrt(65535.0 / fused.cells[i].best_weight));
-    });
-    drop_cells(fused, witnesses.deny(points, pool));
-}
-
-void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
+// Whether there were any to move; their keys are no longer sorted then.
+bool move_to_planes(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
     const std::size_t n = fused.cells.size();
     std::vector<float> sigma(n);  // of the readings in and around each cell, metres
     std::vector<std::uint8_t> level_of(n);
-    const auto cell_at = [&](std::size_t i) -> const CellSums& { return fused.cells[i]; };
-    visit_surroundings(n, pool, cell_at, [&](std::size_t i, const Around& around) {
+    visit_surroundings(fused.cells, pool, [&](std::size_t i, const Around& around) {
         const double s = least_depth_sigma * std::sqrt(65535 * static_cast<double>(around.count) /
                                                        static_cast<double>(around.weight));
         sigma[i] = static_cast<float>(s);
@@ -231,7 +287,7 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
     }
     std::size_t left = 0;
     for (const auto& cells : which) left += cells.size();
-    if (left == 0) return;
+    if (left == 0) return false;
     const std::unique_ptr<device::Device> device = device::open_native(pool.threads());
     CellGrid grid = grid_of(fused, pool);
     std::vector<std::uint32_t> cell_of(n);  // the level's cell of each cell
@@ -239,16 +295,69 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
     for (std::size_t level = 0; left > 0; ++level) {
         if (level > 0) {
             std::vector<std::uint32_t> parent;
-            grid = coarsen(grid, pool, parent);
+            grid = coarsen_by_slabs(grid, pool, parent);
             pool.each(n, fused_chunk, [&](std::size_t i) { cell_of[i] = parent[cell_of[i]]; });
         }
         if (which[level].empty()) continue;
-        flatten_level(fused, grid, static_cast<double>(1 << level), which[level], cell_of, sigma,
+        flatten_level(fused, {grid, static_cast<double>(1 << level), which[level], cell_of, sigma},
                       *device, pool);
         left -= which[level].size();
     }
-    grid = {};
-    bin_anew(fused, pool);
+    return true;
+}
+
+}  // namespace
+
+FusedCells::FusedCells(CellTables of, double edge_m, ThreadPool& pool)
+    : cell_m(edge_m), tables(std::move(of)), cells(tables.sorted(pool)) {
+    for (CellTable& table : tables.shards) table.drop_index();
+#ifdef __GLIBC__
+    // It lies scattered among the cells, where nothing large has room.
+    ::malloc_trim(0);
+#endif
+}
+
+void drop_strays(FusedCells& fused, std::size_t frames, ThreadPool& pool) {
+    std::vector<std::uint8_t> weak(fused.cells.size());
+    visit_surroundings(fused.cells, pool, [&](std::size_t i, const Around& all) {
+        const CellSums& cell = *fused.cells[i];
+        const auto around = static_cast<double>(all.cells - 1),
+                   count = static_cast<double>(all.count - cell.count),
+                   weight = static_cast<double>(all.weight - cell.weight);
+        const bool lonely = around == 0 && cell.count == 1 && frames > 1;
+        // Below a tenth of its surroundings by readings and by certainty.
+        const bool below = around > 0 && 10.0 * cell.count < count / around &&
+                           10.0 * static_cast<double>(cell.weight) < weight / around;
+        weak[i] = lonely || below;
+    });
+    drop_cells(fused, weak);
+}
+
+void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool) {
+    std::vector<std::uint8_t> denied;
+    for (std::size_t from = 0; from < fused.cells.size(); from += slab_cells) {
+        const std::size_t n = std::min(slab_cells, fused.cells.size() - from);
+        FusedPoints points;
+        for (std::vector<float>* values : {&points.x, &points.y, &points.z, &points.sigma})
+            values->resize(n);
+        pool.each(n, fused_chunk, [&](std::size_t i) {
+            const CellSums& cell = *fused.cells[from + i];
+            const std::array<double, 3> at = mean_of(cell);
+            constexpr auto bias = static_cast<double>(key_bias);
+            points.x[i] = static_cast<float>((at[0] - bias) * fused.cell_m);
+            points.y[i] = static_cast<float>((at[1] - bias) * fused.cell_m);
+            points.z[i] = static_cast<float>((at[2] - bias) * fused.cell_m);
+            points.sigma[i] =
+                static_cast<float>(least_depth_sigma * std::sqrt(65535.0 / cell.best_weight));
+        });
+        const std::vector<std::uint8_t> some = witnesses.deny(points, pool);
+        denied.insert(denied.end(), some.begin(), some.end());
+    }
+    drop_cells(fused, denied);
+}
+
+void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
+    if (move_to_planes(fused, least_sigma_m, pool)) bin_anew(fused, pool);
 }
 
 }  // namespace topple::geometry

@@ -52,6 +52,8 @@ FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned t
     : intrinsics_(intrinsics), cell_m_(cell_m) {
     check(intrinsics, cell_m);
     cells_ = std::make_unique<Cells>(intrinsics, cell_m, threads);
+    for (std::vector<CellSums>& block : cells_->waiting)
+        block.reserve(5 * most_waiting / (4 * Cells::block_count));
 }
 FrameFusion::~FrameFusion() = default;
 FrameFusion::FrameFusion(FrameFusion&&) noexcept = default;
@@ -105,14 +107,11 @@ void FrameFusion::Cells::flush() {
 }
 
 FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
-    FusedCells fused;
-    fused.cell_m = cell_m_;
     cells_->flush();
     cells_->waiting = {};
-    const CellPlaces sorted = cells_->tables.sorted(cells_->pool);
+    FusedCells fused(std::move(cells_->tables), cell_m_, cells_->pool);
     poll();
-    fused.cells = strong_cells(sorted, cells_->viewpoints.size(), cells_->pool);
-    cells_->tables = {};
+    drop_strays(fused, cells_->viewpoints.size(), cells_->pool);
     poll();
     drop_denied(fused, cells_->witnesses, cells_->pool);
     poll();
@@ -127,8 +126,9 @@ FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
     result.viewpoints = std::move(cells_->viewpoints);
     for (const std::uint64_t count : cells_->outside) result.cloud.dropped += count;
     const bool coloured = std::ranges::any_of(
-        fused.cells, [](const CellSums& cell) { return cell.colour_weight > 0; });
-    for (const CellSums& cell : fused.cells) {
+        fused.cells, [](const CellSums* cell) { return cell->colour_weight > 0; });
+    for (const CellSums* const place : fused.cells) {
+        const CellSums& cell = *place;
         if (coloured) {
             const auto mean = [&](std::size_t channel) {
                 const std::uint64_t weight = std::max(cell.colour_weight, 1u);
