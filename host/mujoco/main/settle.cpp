@@ -31,25 +31,18 @@ Model load(const std::filesystem::path& file, std::string& problem) {
     return model;
 }
 
+// The memory of versions before 2.3 does not grow, and takes the square of the contacts, 1.8 GB for
+// the most: so what has too little is simulated anew with twice as much.
+constexpr bool memory_grows = mjVERSION_HEADER >= 230;
+constexpr int least_room = 250, most_room = 3000;
+
 // The data of a model; nothing where there is no memory for it.
-Data make_data(mjModel& model) {
+Data make_data(mjModel& model, [[maybe_unused]] int room) {
 #if mjVERSION_HEADER < 230
-    // Their memory does not grow, and takes the square of the contacts, 1.8 GB for the most: so as
-    // many as there are at the start, and as many again.
-    constexpr int least = 250, most = 3000;
-    for (int room = least;; room = std::min(2 * room, most)) {
-        model.nconmax = room;
-        model.njmax = 4 * room;  // rows
-        Data data(mj_makeData(&model), &mj_deleteData);
-        if (!data || room == most) return data;
-        mj_forward(&model, data.get());
-        const bool enough = 2 * data->ncon <= room;
-        mj_resetData(&model, data.get());
-        if (enough) return data;
-    }
-#else
-    return {mj_makeData(&model), &mj_deleteData};
+    model.nconmax = room;
+    model.njmax = 4 * room;  // rows
 #endif
+    return {mj_makeData(&model), &mj_deleteData};
 }
 
 // Whether the last step warned of any of these; that is told once.
@@ -72,19 +65,13 @@ void follow(Motion& motion, const mjData& data, std::size_t body, const std::vec
     motion.turned_deg = std::max(motion.turned_deg, degrees);
 }
 
-}  // namespace
-
-Settled settle(const std::filesystem::path& file, double seconds, double patience_s,
-               void (*on_error)(const char* what)) {
-    mju_user_error = on_error;
+// From the start, with room for so many contacts where that must be said.
+Settled simulate(mjModel& model, int room, double seconds, double patience_s) {
     Settled out;
     out.version = mj_versionString();
-    const Model loaded = load(file, out.problem);
-    if (!out.problem.empty()) return out;
-    const Data made = make_data(*loaded);
+    const Data made = make_data(model, room);
     if (!made) out.problem = "no memory";
     if (!made) return out;
-    const mjModel& model = *loaded;
     mjData& data = *made;
     mj_forward(&model, &data);
     out.contacts = static_cast<std::uint64_t>(data.ncon);
@@ -102,6 +89,7 @@ Settled settle(const std::filesystem::path& file, double seconds, double patienc
     const auto taken_s = [&] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
+    const bool may_have_more = !memory_grows && room < most_room;
     while (data.time < seconds) {
         if (taken_s() > patience_s) {
             out.cut_short = "it took longer than it may";
@@ -109,6 +97,7 @@ Settled settle(const std::filesystem::path& file, double seconds, double patienc
         }
         mj_step(&model, &data);
         out.left_out += warned(data, {mjWARN_CONTACTFULL, mjWARN_CNSTRFULL});
+        if (out.left_out > 0 && may_have_more) break;
         if (warned(data, {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})) {
             out.cut_short = "it became unstable";
             break;
@@ -119,6 +108,22 @@ Settled settle(const std::filesystem::path& file, double seconds, double patienc
     }
     out.wall_s = taken_s();
     return out;
+}
+
+}  // namespace
+
+Settled settle(const std::filesystem::path& file, double seconds, double patience_s,
+               void (*on_error)(const char* what)) {
+    mju_user_error = on_error;
+    Settled out;
+    out.version = mj_versionString();
+    const Model model = load(file, out.problem);
+    if (!out.problem.empty()) return out;
+    for (int room = least_room;; room = std::min(2 * room, most_room)) {
+        out = simulate(*model, room, seconds, patience_s);
+        patience_s -= out.wall_s;
+        if (memory_grows || out.left_out == 0 || room == most_room) return out;
+    }
 }
 
 }  // namespace topple::mujoco
