@@ -104,7 +104,8 @@ void PieceSolids::sample(std::span<const std::size_t> cells, double solid_m3, Co
     constexpr std::size_t most = most_points / 8;  // corners of a voxel
     const std::size_t step = (cells.size() + most - 1) / most;
     for (std::size_t n = step / 2; n < cells.size(); n += step) add_corners(cells[n], part.solid);
-    part.solid_each_m3 = solid_m3 / static_cast<double>(part.solid.size());
+    // Surfaces may leave nothing of any of these cells.
+    part.solid_each_m3 = solid_m3 / std::max<double>(1, static_cast<double>(part.solid.size()));
 }
 
 void PieceSolids::add_corners(std::size_t cell, std::vector<Vec3>& out) {

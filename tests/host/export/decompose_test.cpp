@@ -6,6 +6,7 @@
 #include "core/vectors.h"
 #include "export/clumps.h"
 #include "export/merge_parts.h"
+#include "export/piece_solid.h"
 #include "host/export/blocks.h"
 #include "testing.h"
 
@@ -92,6 +93,44 @@ SolidScene floor_seen_from_both_sides(Role role) {
     for (std::size_t s = 1; s < BoundaryCells::slots; ++s) boundary.slot[s].resize(boundary.size());
     for (auto& axis : boundary.moment) axis.resize(boundary.size());
     return {whole.cells(), {role}, {}, std::move(boundary)};
+}
+
+// Every second voxel is sampled here, and of all but those at the corners surfaces leave nothing.
+TEST(PieceSolids, WhatIsSampledMayHaveNothingSolid) {
+    const SolidScene whole = solids_of({{{0, 0, 0}, {5, 5, 5}}}, 1);
+    BoundaryCells all;
+    all.patches.resize(2);
+    all.patches[0].c = {1};   // nothing is solid
+    all.patches[1].c = {-1};  // all is
+    const auto at_end = [](int n) { return n % 4 == 0; };
+    for (int i = 0; i < 5; ++i) {
+        for (int j = 0; j < 5; ++j) {
+            for (int k = 0; k < 5; ++k) {
+                all.i.push_back(i);
+                all.j.push_back(j);
+                all.k.push_back(k);
+                all.primitive.push_back(0);
+                all.form.push_back(make_form(true, {SlotUse{false, true, false}}, 1));
+                all.slot[0].push_back(at_end(i) && at_end(j) && at_end(k) ? 1 : 0);
+            }
+        }
+    }
+    all.share.assign(all.size(), 1);
+    for (std::size_t s = 1; s < BoundaryCells::slots; ++s) all.slot[s].resize(all.size());
+    for (auto& axis : all.moment) axis.resize(all.size());
+    std::vector<Cell> cells;
+    std::vector<std::size_t> places;
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        cells.push_back({{all.i[n], all.j[n], all.k[n]}, n});
+        places.push_back(n);
+    }
+    CellGrid grid(std::move(cells));
+    for (const std::size_t n : places) grid.mark(n, 0);
+    const SolidScene solids(whole.cells(), {Role::none}, {}, std::move(all));
+    const PieceSolid piece = PieceSolids(solids, grid).of(0, places);
+    ASSERT_TRUE(piece.hull);
+    EXPECT_TRUE(piece.hull->solid.empty());
+    EXPECT_TRUE(std::isfinite(piece.hull->solid_each_m3));
 }
 
 TEST(Decompose, AFloorIsALevelSlabBelowItsTop) {
