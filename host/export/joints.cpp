@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/vectors.h"
 #include "export/eigen.h"
@@ -138,21 +139,82 @@ void add_axis(double deep_m, JointedFront& front) {
     }
 }
 
+std::optional<ConvexPart> part_of(const Box& box) {
+    const std::array<Vec3, 8> corners = box.corners();
+    return hull_part(corners);
+}
+
 // Whether boxes lie in no other body: where a part of the furniture was cut away, another one's is.
 bool are_free(std::span<const Box> boxes, const std::vector<Body>& bodies, std::size_t own) {
     return std::ranges::all_of(boxes, [&](const Box& box) {
-        const std::array<Vec3, 8> corners = box.corners();
-        const std::optional<ConvexPart> part = hull_part(corners);
+        const std::optional<ConvexPart> part = part_of(box);
         return part && !any_near(bodies, *part, 0, [&](const Body& body, const ConvexPart& other) {
                    return &body != &bodies[own] && overlap(*part, other);
                });
     });
 }
 
-// The boards and the handle, as large as there is room for among the other bodies, and where that
-// is not within the furniture, right before it; none where there is none for the front's board.
-std::vector<Box> boxes_of(Front& front, double deep_m, const std::vector<Body>& bodies,
-                          std::size_t own) {
+// What is left of a part beyond that side of a board's that costs least of what is solid.
+std::optional<ConvexPart> beside(const ConvexPart& part, const ConvexPart& board) {
+    std::optional<ConvexPart> out;
+    for (const HalfSpace& side : board.face) {
+        auto left = cut(part, {opposite(side.normal), -side.offset_m});
+        if (left && (!out || std::pair(left->solid.size(), left->volume_m3) >
+                                 std::pair(out->solid.size(), out->volume_m3)))
+            out = std::move(left);
+    }
+    return out;
+}
+
+// Makes room for a board where other bodies' hulls, which bulge, reach into it by little. False,
+// with all as it was, where they don't give way.
+bool make_room(const Box& board, std::vector<Body>& bodies, std::size_t own) {
+    constexpr double most_of_fixed = 0.05, most_of_free = 0.02;  // of what is solid
+    const std::optional<ConvexPart> room = part_of(board);
+    if (!room) return false;
+    std::vector<std::pair<std::size_t, Body>> cut_back;
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        const auto reaches_in = [&](const ConvexPart& part) {
+            return near(part, *room, 0) && overlap(part, *room);
+        };
+        if (n == own || std::ranges::none_of(bodies[n].parts, reaches_in)) continue;
+        Body body = bodies[n];
+        double lost_m3 = 0;
+        for (ConvexPart& part : body.parts) {
+            if (!reaches_in(part)) continue;
+            auto left = beside(part, *room);
+            if (!left) return false;
+            const double lost = static_cast<double>(part.solid.size() - left->solid.size());
+            lost_m3 += lost * part.solid_each_m3;
+            body.lost_m3 += part.volume_m3 - left->volume_m3;
+            part = *std::move(left);
+        }
+        if (lost_m3 > (body.fixed ? most_of_fixed : most_of_free) * body.solid_m3) return false;
+        cut_back.emplace_back(n, std::move(body));
+    }
+    for (auto& [n, body] : cut_back) bodies[n] = std::move(body);
+    return true;
+}
+
+// Whether a body lies around a front's grip: it is the handle, which was found as a thing.
+bool is_handle(const Front& front, const Body& body) {
+    constexpr double around_m = 0.03;
+    if (body.fixed || body.parts.empty()) return false;
+    const Box grip = box_of(front, front.grip, front.grip_m);
+    return std::ranges::all_of(body.parts, [&](const ConvexPart& part) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Interval along = extent_along(part, grip.axis[a]);
+            const double middle = dot(grip.axis[a], grip.center), half = grip.half_m[a] + around_m;
+            if (along.low < middle - half || along.high > middle + half) return false;
+        }
+        return true;
+    });
+}
+
+// The boards and the handle, as large as there is room for among the other bodies, which give way a
+// little; and where that is not within the furniture, right before it; none where there is none for
+// the front's board.
+std::vector<Box> boxes_of(Front& front, double deep_m, std::vector<Body>& bodies, std::size_t own) {
     constexpr double least_long_m = 0.1, shorter_m = 0.05;
     const Vec3 face = front.middle;
     for (const auto& [before_m, inset_m] : {std::pair(0.0, clear_m),
@@ -162,7 +224,7 @@ std::vector<Box> boxes_of(Front& front, double deep_m, const std::vector<Body>& 
                                             {board_m, 0.02}}) {
         front.middle = along(face, before_m, front.out);
         std::vector<Box> out{board_of(front, inset_m)};
-        if (!are_free(out, bodies, own)) continue;
+        if (!make_room(out[0], bodies, own)) continue;
         for (double long_m = front.opening == Opening::slide ? deep_m - board_m : 0;
              long_m >= least_long_m; long_m -= shorter_m) {
             const std::vector<Box> tray = tray_of(front, inset_m, long_m);
@@ -179,33 +241,46 @@ std::vector<Box> boxes_of(Front& front, double deep_m, const std::vector<Body>& 
 
 }  // namespace
 
-std::vector<JointedFront> jointed_fronts(std::vector<Body>& bodies,
-                                         const std::vector<std::vector<Front>>& of_object,
-                                         double density_kg_m3) {
+std::vector<JointedFront> place_fronts(std::vector<Body>& bodies,
+                                       const std::vector<std::vector<Front>>& of_object) {
     constexpr double behind_m = 0.05, most_deep_m = 0.6;  // of a drawer, from what is behind it
     std::vector<JointedFront> out;
     for (std::size_t n = 0; n < std::min(bodies.size(), of_object.size()); ++n) {
-        Body& body = bodies[n];
-        if (body.parts.empty()) continue;
-        std::size_t number = 0;
+        if (bodies[n].parts.empty()) continue;
         for (const Front& front : of_object[n]) {
             const double deep_m = std::min(most_deep_m, front.deep_m - behind_m);
             JointedFront made;
             static_cast<Front&>(made) = front;
-            made.name = body_name(body, n) + "_front_" + std::to_string(number);
             made.body = n;
-            made.middle = plus(front.middle, body.moved_m);
-            made.grip = plus(front.grip, body.moved_m);
+            made.middle = plus(front.middle, bodies[n].moved_m);
+            made.grip = plus(front.grip, bodies[n].moved_m);
+            std::vector<std::pair<std::size_t, std::vector<ConvexPart>>> handles;
+            for (std::size_t other = 0; other < bodies.size(); ++other)
+                if (other != n && is_handle(made, bodies[other]))
+                    handles.emplace_back(other, std::exchange(bodies[other].parts, {}));
             made.boxes = boxes_of(made, deep_m, bodies, n);
-            if (made.boxes.empty()) continue;
+            if (made.boxes.empty()) {
+                for (auto& [other, parts] : handles) bodies[other].parts = std::move(parts);
+                continue;
+            }
             add_axis(deep_m, made);
-            weigh(made, density_kg_m3);
-            if (!body.fixed && !take_out(made, body)) continue;
-            ++number;
             out.push_back(std::move(made));
         }
     }
     return out;
+}
+
+void joint_fronts(std::vector<JointedFront>& fronts, std::vector<Body>& bodies,
+                  double density_kg_m3) {
+    std::vector<std::size_t> number(bodies.size(), 0);
+    std::erase_if(fronts, [&](JointedFront& front) {
+        Body& body = bodies[front.body];
+        if (!are_free(front.boxes, bodies, front.body)) return true;
+        weigh(front, density_kg_m3);
+        if (!body.fixed && !take_out(front, body)) return true;
+        front.name = body_name(body, front.body) + "_front_" + std::to_string(number[front.body]++);
+        return false;
+    });
 }
 
 }  // namespace topple::exports

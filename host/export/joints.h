@@ -27,11 +27,16 @@ struct JointedFront : Front {
     double damping() const { return slides() ? 10 : 0.5; }
 };
 
-// Makes the fronts of each object bodies of their own, whose mass is taken from its body's. Boards
-// of the thickness and of a density of closed furniture's, which lie in no other body. What has no
-// parts has no fronts.
-std::vector<JointedFront> jointed_fronts(std::vector<Body>& bodies,
-                                         const std::vector<std::vector<Front>>& of_object,
-                                         double density_kg_m3);
+// The fronts of each object, of boards of the thickness of closed furniture's, where there is room
+// for them: other bodies are cut back by little, and handles that were found as things are things
+// no more. What has no parts has no fronts. Before bodies are stood on feet, as what is cut may be
+// what they stand on.
+std::vector<JointedFront> place_fronts(std::vector<Body>& bodies,
+                                       const std::vector<std::vector<Front>>& of_object);
+
+// Makes them bodies of their own, of a density of closed furniture's, whose mass is taken from
+// their body's. Those go that feet and pads were put into, or that their body can't be without.
+void joint_fronts(std::vector<JointedFront>& fronts, std::vector<Body>& bodies,
+                  double density_kg_m3);
 
 }  // namespace topple::exports

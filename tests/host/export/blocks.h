@@ -4,6 +4,7 @@
 #include "core/solid_scene.h"
 #include "export/body.h"
 #include "export/convex_part.h"
+#include "export/joints.h"
 #include "standard.h"
 
 // Boxes along the axes, as parts and as voxels.
@@ -57,6 +58,14 @@ inline SolidScene solids_of(const std::vector<Cells>& blocks, std::size_t primit
         cells.basis.push_back(Basis::surface);
     }
     return {std::move(cells), std::vector<Role>(primitives, Role::none)};
+}
+
+inline std::vector<JointedFront> fronts_on_joints(std::vector<Body>& bodies,
+                                                  const std::vector<std::vector<Front>>& of_object,
+                                                  double density_kg_m3) {
+    std::vector<JointedFront> out = place_fronts(bodies, of_object);
+    joint_fronts(out, bodies, density_kg_m3);
+    return out;
 }
 
 }  // namespace topple::exports::test

@@ -155,12 +155,7 @@ TEST(Fronts, WallsThingsBeforeAFrontAndNoiseHaveNone) {
     for (const auto& fronts : fronts_of(no_points.scene())) EXPECT_TRUE(fronts.empty());
 }
 
-// Mass, centre and inertia about one point of a body and its fronts together.
-TEST(JointedFronts, WeighWithTheirBodyWhatItWeighed) {
-    std::vector<Body> bodies{body_of(block({0, 0, 0}, {0.8, 0.5, 0.7}), 1, {})};
-    const double m = bodies[0].mass_kg;
-    bodies[0].inertia_kg_m2 = {m * 0.06, 0.1, 0, 0.1, m * 0.09, 0, 0, 0, m * 0.07};
-    const Body whole = bodies[0];
+Front drawer_of_a_cabinet() {
     Front drawer;
     drawer.out = {0, -1, 0};
     drawer.across = {1, 0, 0};
@@ -170,10 +165,20 @@ TEST(JointedFronts, WeighWithTheirBodyWhatItWeighed) {
     drawer.deep_m = 0.5;
     drawer.grip = {0.4, -0.015, 0.5};
     drawer.grip_m = {0.15, 0.03, 0.02};
+    return drawer;
+}
+
+// Mass, centre and inertia about one point of a body and its fronts together.
+TEST(JointedFronts, WeighWithTheirBodyWhatItWeighed) {
+    std::vector<Body> bodies{body_of(block({0, 0, 0}, {0.8, 0.5, 0.7}), 1, {})};
+    const double m = bodies[0].mass_kg;
+    bodies[0].inertia_kg_m2 = {m * 0.06, 0.1, 0, 0.1, m * 0.09, 0, 0, 0, m * 0.07};
+    const Body whole = bodies[0];
+    const Front drawer = drawer_of_a_cabinet();
     Front door = drawer;
     door.opening = Opening::hinge_at_high_u;
     door.middle[2] = door.grip[2] = 0.2;
-    const auto fronts = jointed_fronts(bodies, {{drawer, door}}, 700);
+    const auto fronts = fronts_on_joints(bodies, {{drawer, door}}, 700);
     ASSERT_EQ(fronts.size(), 2u);
     EXPECT_EQ(fronts[0].boxes.size(), 6u);
     EXPECT_EQ(fronts[1].boxes.size(), 2u);
@@ -215,8 +220,33 @@ TEST(JointedFronts, WhatIsTooLightForThemHasNone) {
     door.middle = {0.4, 0, 0.35};
     door.wide_m = 0.8;
     door.high_m = 0.7;
-    EXPECT_TRUE(jointed_fronts(bodies, {{door}}, 700).empty());
+    EXPECT_TRUE(fronts_on_joints(bodies, {{door}}, 700).empty());
     EXPECT_EQ(bodies[0].mass_kg, 5);
+}
+
+// A wall beside a cabinet, whose hull reaches into the drawer's board; its solid does so, or not.
+TEST(JointedFronts, HullsThatBulgeIntoAFrontGiveWay) {
+    const Front drawer = drawer_of_a_cabinet();
+    for (const bool bulges : {true, false}) {
+        std::vector<Body> bodies{body_of(block({0, 0, 0}, {0.8, 0.5, 0.7}), 1, {}),
+                                 body_of(block({-0.5, -0.2, 0}, {0.1, 0.5, 1}), 0, {})};
+        ConvexPart& wall = bodies[1].parts[0];
+        bodies[1].solid_m3 = wall.volume_m3;
+        if (bulges) std::erase_if(wall.solid, [](const Vec3& p) { return p[0] > 0; });
+        const auto fronts = fronts_on_joints(bodies, {{drawer}}, 700);
+        EXPECT_NEAR(bodies[1].parts[0].high[0], bulges ? 0.012 : 0.1, 1e-9);
+        EXPECT_EQ(fronts.size(), bulges ? 1u : 0u);
+    }
+}
+
+TEST(JointedFronts, AHandleThatWasFoundAsAThingIsPartOfItsFront) {
+    const Front drawer = drawer_of_a_cabinet();
+    std::vector<Body> bodies{body_of(block({0, 0, 0}, {0.8, 0.5, 0.7}), 1, {}),
+                             body_of(block({0.33, -0.035, 0.485}, {0.47, 0.005, 0.515}), 2, {0}),
+                             body_of(block({0.33, -0.5, 0.485}, {0.47, -0.005, 0.515}), 2, {0})};
+    ASSERT_EQ(fronts_on_joints(bodies, {{drawer}}, 700).size(), 1u);
+    EXPECT_TRUE(bodies[1].parts.empty());
+    EXPECT_FALSE(bodies[2].parts.empty());
 }
 
 }  // namespace

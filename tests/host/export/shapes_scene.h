@@ -94,7 +94,7 @@ inline SimScene shapes_scene() {
     Body& cabinet = add(block(low, high), 1);
     std::vector<std::vector<Front>> fronts(out.bodies.size());
     fronts.back() = door_and_drawer(low, high);
-    out.fronts = jointed_fronts(out.bodies, fronts, 700);
+    out.fronts = fronts_on_joints(out.bodies, fronts, 700);
     cabinet.visual =
         painted_block(minus(low, cabinet.center_m), minus(high, cabinet.center_m), {150, 110, 70});
     return out;
