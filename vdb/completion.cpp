@@ -100,7 +100,8 @@ void commit(std::span<const Claim> claims, VoxelScene& volume, SolidCells& cells
 
 std::uint64_t fill(device::Device& device, VoxelScene& volume, const FillOptions& options) {
     volume.clear_completed();
-    const std::vector<Claim> claims = claims_of(six_direction_rays(device, volume, options));
+    const std::vector<Claim> claims = claims_of(six_direction_rays(
+        device, volume, options, [](const RayEnds& each) { return each.taken; }));
     SolidCells cells;
     commit(claims, volume, cells);
     return claims.size();
@@ -112,7 +113,9 @@ std::vector<Claim> complete(device::Device& device, const CompletionOptions& opt
         device.threads().poll();
         commit(propose(VolumeView(volume, cells, options.fill.roles)), volume, cells);
     };
-    const std::vector<RayEnds> rays = six_direction_rays(device, volume, options.fill);
+    const std::vector<RayEnds> rays =
+        six_direction_rays(device, volume, options.fill,
+                           [](const RayEnds& each) { return each.taken || is_surely(each.ends); });
     commit(claims_of(rays), volume, cells);
     round([&](const VolumeView& view) { return support_claims(view, options.ledges); });
     round([&](const VolumeView& view) { return leg_claims(view); });

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -91,8 +92,10 @@ struct RayEnds {
     std::uint8_t ends = 0;        // what its rays end at (fill_chance.h)
     bool taken = false;
 };
+// Those of which keep(ends) is so, by voxel.
 std::vector<RayEnds> six_direction_rays(device::Device& device, const VoxelScene& volume,
-                                        const FillOptions& options);
+                                        const FillOptions& options,
+                                        const std::function<bool(const RayEnds&)>& keep);
 // Of those that are taken.
 std::vector<Claim> claims_of(std::span<const RayEnds> rays);
 

@@ -180,7 +180,8 @@ std::vector<std::uint32_t> sweep_and_vote(device::Device& device, const VoxelSce
 }  // namespace
 
 std::vector<RayEnds> six_direction_rays(device::Device& device, const VoxelScene& volume,
-                                        const FillOptions& options) {
+                                        const FillOptions& options,
+                                        const std::function<bool(const RayEnds&)>& keep) {
     if (options.votes < 1 || options.votes > 6) {
         throw Error(ErrorKind::usage, "filling: " + std::to_string(options.votes) +
                                           " votes; there are six directions");
@@ -213,8 +214,9 @@ std::vector<RayEnds> six_direction_rays(device::Device& device, const VoxelScene
         const bool agree = word >> 24 != 0;
         const auto ends =
             static_cast<std::uint8_t>((word >> 16 & 127) + (agree ? all_ends / 2 : 0));
-        out.push_back(
-            {at, static_cast<std::int32_t>(word & 65535) - 1, ends, (word >> 23 & 1) != 0});
+        const RayEnds each{at, static_cast<std::int32_t>(word & 65535) - 1, ends,
+                           (word >> 23 & 1) != 0};
+        if (keep(each)) out.push_back(each);
     });
     return out;
 }

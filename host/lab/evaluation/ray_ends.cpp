@@ -64,7 +64,8 @@ void add_rays(const std::string& kind, const scenes::ScanOptions& scan_options,
     vdb::VoxelScene& volume = *voxels.scene;
     volume.clear_completed();
     const auto rays = vdb::six_direction_rays(
-        device, volume, fill_options(voxels.solids->cells(), voxels.solids->roles()));
+        device, volume, fill_options(voxels.solids->cells(), voxels.solids->roles()),
+        [](const vdb::RayEnds&) { return true; });
     const Mat4 world_from_scan = scenes::inverse(room.scan.world_to_scan);
     const vdb::VoxelFrame& frame = volume.frame();
     const std::size_t step = std::max<std::size_t>(1, rays.size() / most_voxels);
