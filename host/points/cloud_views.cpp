@@ -157,10 +157,8 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
     } else if (out.cloud.nx.empty()) {
         out.sides_guessed = true;
         out.viewpoints = std::move(views.viewpoints);
-        for (const std::uint32_t s : surfels.of_point) {
+        for (const std::uint32_t s : surfels.of_point)
             out.viewpoint_of_point.push_back(views.viewpoint_of_surfel[s]);
-            out.side_unseen.push_back(!views.seen[s]);
-        }
     }
     if (!scan && !posed) {
         const std::string views_text = std::to_string(eyes) +

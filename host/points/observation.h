@@ -63,8 +63,7 @@ struct Observation {
     std::uint32_t image_width = 0, image_height = 0;  // as in ParseResult
     std::vector<Vec3> viewpoints;                     // where the sensor was
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
-    std::vector<bool> side_unseen;  // of each point: which side was seen is a guess; empty: of none
-    std::unique_ptr<FrameStream> frames;  // what carves the free space; null: nothing can
+    std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
     // Whether that is from where sensors were: what stays unseen none of them saw.
     bool by_sensors = false;
     std::optional<Vec3> camera_up;

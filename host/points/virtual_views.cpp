@@ -98,7 +98,6 @@ class Looking {
         out_.viewpoints = out_.eyes;
         for (std::size_t i = 0; i < s_.size(); ++i) {
             std::uint32_t& from = out_.viewpoint_of_surfel[i];
-            out_.seen.push_back(from != no_eye);
             if (from == no_eye) from = nearest_eye(i);
             if (from != no_eye) continue;
             from = static_cast<std::uint32_t>(out_.viewpoints.size());

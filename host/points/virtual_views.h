@@ -42,7 +42,6 @@ struct VirtualViews {
     bool sides_believed = false;  // they were said to be known, and the first place bore it out
     // For each surfel a viewpoint in front of it; empty where no eye was found.
     std::vector<std::uint32_t> viewpoint_of_surfel;
-    std::vector<bool> seen;  // by surfel: from its viewpoint; the sides of others are guessed
 };
 
 // For a cloud without poses. The first place is the one with the most free space around it that

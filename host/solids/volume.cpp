@@ -184,10 +184,7 @@ SpaceCarving::Marks marks_of(const Observation& input, const Surfaces& geometry,
             of_surfel[n] |= static_cast<std::uint8_t>(1u << (2 * a + (normal[a] < 0 ? 1 : 0)));
         }
     }
-    for (std::size_t p = 0; p < s.of_point.size(); ++p) {
-        const bool guessed = !input.side_unseen.empty() && input.side_unseen[p];
-        out.seen_side.push_back(guessed ? std::uint8_t{0} : of_surfel[s.of_point[p]]);
-    }
+    for (const std::uint32_t n : s.of_point) out.seen_side.push_back(of_surfel[n]);
     for (const std::uint32_t n : gaps.surfel) out.seen_side.push_back(of_surfel[n]);
     return out;
 }
