@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "points/frames_cells.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 namespace topple::geometry {
 namespace {
@@ -51,6 +54,14 @@ void write_slab(const std::vector<BlockPlace>& blocks, std::size_t begin, std::s
 }
 
 }  // namespace
+
+std::array<double, 3> mean_of(const CellSums& cell) {
+    std::array<double, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        at[a] = static_cast<double>(index_in(cell.key, a)) + mean_offset(cell, a) / cell_parts;
+    }
+    return at;
+}
 
 void CellSums::add(const CellSums& other) {
     for (std::size_t a = 0; a < 3; ++a) offset[a] += other.offset[a];
@@ -252,6 +263,15 @@ CellPlaces CellTables::sorted(ThreadPool& pool) {
         }
     });
     return cells;
+}
+
+FusedCells::FusedCells(CellTables of, double edge_m, ThreadPool& pool)
+    : cell_m(edge_m), tables(std::move(of)), cells(tables.sorted(pool)) {
+    for (CellTable& table : tables.shards) table.drop_index();
+#ifdef __GLIBC__
+    // It lies scattered among the cells, where nothing large has room.
+    ::malloc_trim(0);
+#endif
 }
 
 }  // namespace topple::geometry

@@ -178,6 +178,14 @@ struct FusedCells {
     CellTables tables;  // without their index
     CellPlaces cells;   // those that are left, sorted by key
 };
+// Where a cell's mean lies, in cells from the grid's lowest corner.
+std::array<double, 3> mean_of(const CellSums& cell);
+
+// Cells handed to a thread at once; and those that a step works on at once, along x: tables of all
+// of a scan's would be most of the memory that a parse takes.
+inline constexpr std::uint64_t fused_chunk = 1 << 15;
+inline constexpr std::size_t slab_cells = std::size_t{1} << 18;
+
 // Drops stray readings, of so many frames.
 void drop_strays(FusedCells& fused, std::size_t frames, ThreadPool& pool);
 // Drops cells that the frames deny.

@@ -99,7 +99,7 @@ TEST_F(SparseCloud, WhatIsScannedSparselyIsSolidAllTheSame) {
     std::ranges::sort(masses);
     ASSERT_EQ(masses.size(), 2u);
     EXPECT_NEAR(masses[0], 0.25 * 0.2 * 0.3, 0.05 * 0.25 * 0.2 * 0.3);
-    // Its top has points below the other box, too, whose side nobody can tell.
+    // Below the other box's edge rays tell of a hollow where there is none.
     EXPECT_NEAR(masses[1], 0.6 * 0.5 * 0.4, 0.08 * 0.6 * 0.5 * 0.4);
 }
 
