@@ -38,7 +38,7 @@ void print_export(const ExportSummary& summary) {
     double furthest_m = 0;
     for (const ExportedBody& body : summary.bodies) {
         parts += body.parts;
-        free += !body.fixed;
+        free += !body.fixed && body.parts > 0;
         furthest_m = std::max(furthest_m, std::abs(body.moved_m[2]));
     }
     print(

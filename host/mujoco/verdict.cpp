@@ -87,7 +87,7 @@ Verdict judge(const Scene& scene, const ExportSummary& exported, Settled run, do
     out.run = std::move(run);
     out.asked_s = asked_s;
     for (const ExportedBody& body : exported.bodies) {
-        if (body.object < 0) continue;
+        if (body.object < 0 || body.parts == 0) continue;
         const Object& object = scene.objects.at(static_cast<std::size_t>(body.object));
         if (object.grounded) continue;
         ObjectVerdict verdict;

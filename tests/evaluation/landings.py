@@ -49,7 +49,7 @@ class Room:
             scene = json.load(file)
         with open(os.path.join(mjcf, 'bodies.json'), encoding='utf-8') as file:
             export = json.load(file)
-        self.bodies = {b['object']: b for b in export['bodies'] if b['object'] >= 0}
+        self.bodies = {b['object']: b for b in export['bodies'] if b['object'] >= 0 and b['parts'] > 0}
         self.floor_m = export['floor_m'] or 0.0
         self.objects, self.to_world = scene['objects'], np.array(scene['manhattan_from_input'])
         spec = mujoco.MjSpec.from_file(os.path.join(mjcf, 'scene.xml'))

@@ -195,7 +195,7 @@ def judged(topple, name, scan, bullet, warp, drop):
         with open(os.path.join(out, 'scene.json'), encoding='utf-8') as file:
             objects = json.load(file)['objects']
         with open(os.path.join(mjcf, 'bodies.json'), encoding='utf-8') as file:
-            bodies = [b for b in json.load(file)['bodies'] if b['object'] >= 0 and not objects[b['object']]['grounded']]
+            bodies = [b for b in json.load(file)['bodies'] if b['object'] >= 0 and b['parts'] > 0 and not objects[b['object']]['grounded']]
         names = [b['name'] for b in bodies if not b['held']]
         stands = {b['name']: objects[b['object']]['barrier_J'] > 0 for b in bodies}
         ends, deepest, times = in_mujoco(mjcf, names)

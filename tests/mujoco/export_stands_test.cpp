@@ -101,7 +101,7 @@ Object object(std::int32_t id, double barrier_J, double error_J, double release_
 }
 
 // The ground; one that stays as said; one that falls as said; one that moves unlike said; one that
-// nobody can tell; one that is held; one with nothing to release.
+// nobody can tell; one that is held; one with nothing to release; one that is in no export.
 struct Room {
     Scene scene;
     ExportSummary exported;
@@ -109,13 +109,14 @@ struct Room {
     Room() {
         scene.objects = {object(0, 0, 0, 0),   object(1, 2, 0.1, 3),   object(2, 0, 0.1, 1),
                          object(3, 1, 0.1, 1), object(4, 0.1, 0.2, 1), object(5, 1, 0, 1),
-                         object(6, 0, 0.1, 0)};
+                         object(6, 0, 0.1, 0), object(7, 1, 0.1, 1)};
         scene.objects[0].grounded = true;
         for (const Object& o : scene.objects) {
             ExportedBody body;
             body.object = o.id;
             body.name = "object_" + std::to_string(o.id);
             body.held = o.id == 5;
+            body.parts = o.id == 7 ? 0 : 1;
             exported.bodies.push_back(body);
         }
         exported.bodies.push_back({});

@@ -41,11 +41,13 @@ struct ExportedBody {
     bool on_pad = false, held = false;
     std::uint64_t struts = 0;  // of its parts: in the place of feet that were not seen
     Vec3 moved_m{};            // by which it was let down, so that it touches what carries it
-    std::uint64_t parts = 0;   // convex ones; a body without any is in no export
-    double mass_kg = 0;        // 0 for a pad
-    double solid_m3 = 0;       // of the object as it was parsed
-    double parts_m3 = 0;       // of its parts: more than solid_m3 by what their hulls add
-    double lost_m3 = 0;        // cut off its parts, so that no two bodies overlap
+    // Convex ones. A body without any is in no export: a handle that was found as a thing is part
+    // of its front there.
+    std::uint64_t parts = 0;
+    double mass_kg = 0;   // 0 for a pad
+    double solid_m3 = 0;  // of the object as it was parsed
+    double parts_m3 = 0;  // of its parts: more than solid_m3 by what their hulls add
+    double lost_m3 = 0;   // cut off its parts, so that no two bodies overlap
 
     // lost_m3 as a share of its solid, which may be above 1: parts are hulls. 0 for a pad.
     double lost_share() const { return solid_m3 > 0 ? lost_m3 / solid_m3 : 0; }
