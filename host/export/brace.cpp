@@ -42,12 +42,6 @@ struct Strut {
     std::size_t on = 0;
 };
 
-bool meets(const std::vector<Body>& bodies, const ConvexPart& part, const Body& but) {
-    return any_near(bodies, part, 0, [&](const Body& other, const ConvexPart& stays) {
-        return &other != &but && overlap(part, stays);
-    });
-}
-
 // Unless one that was added before is in the way.
 void add(Strut strut, std::vector<Body>& bodies, Body& body) {
     if (meets(bodies, strut.part, body)) return;

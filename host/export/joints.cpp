@@ -148,9 +148,7 @@ std::optional<ConvexPart> part_of(const Box& box) {
 bool are_free(std::span<const Box> boxes, const std::vector<Body>& bodies, std::size_t own) {
     return std::ranges::all_of(boxes, [&](const Box& box) {
         const std::optional<ConvexPart> part = part_of(box);
-        return part && !any_near(bodies, *part, 0, [&](const Body& body, const ConvexPart& other) {
-                   return &body != &bodies[own] && overlap(*part, other);
-               });
+        return part && !meets(bodies, *part, bodies[own]);
     });
 }
 

@@ -307,6 +307,12 @@ bool near(const Extents<double>& a, const Extents<double>& b, double distance_m)
     return true;
 }
 
+bool meets(const std::vector<Body>& bodies, const ConvexPart& part, const Body& but) {
+    return any_near(bodies, part, 0, [&](const Body& other, const ConvexPart& stays) {
+        return &other != &but && overlap(part, stays);
+    });
+}
+
 void separate(std::vector<Body>& bodies) {
     each_pair(bodies, [](Body& below, Body& above) { separate(below, above); });
 }

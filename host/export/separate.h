@@ -42,6 +42,9 @@ bool any_near(const std::vector<Body>& bodies, const Extents<double>& to, double
     });
 }
 
+// Whether a part lies in any body but one.
+bool meets(const std::vector<Body>& bodies, const ConvexPart& part, const Body& but);
+
 // Cuts parts of different bodies where they overlap, along the plane between them that takes least
 // of what is solid; what lies below keeps its form where either would do. A body that cutting would
 // leave with nothing keeps what it has.

@@ -52,8 +52,6 @@ FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned t
     : intrinsics_(intrinsics), cell_m_(cell_m) {
     check(intrinsics, cell_m);
     cells_ = std::make_unique<Cells>(intrinsics, cell_m, threads);
-    for (std::vector<CellSums>& block : cells_->waiting)
-        block.reserve(5 * most_waiting / (4 * Cells::block_count));
 }
 FrameFusion::~FrameFusion() = default;
 FrameFusion::FrameFusion(FrameFusion&&) noexcept = default;
