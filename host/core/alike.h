@@ -10,8 +10,9 @@
 namespace topple {
 
 // Whether two boxes, each turned as it may be, are of one thing that was scanned twice.
-inline bool alike_sizes(Vec3 a, Vec3 b) {
-    constexpr double share = 0.15, at_least_m = 0.02;  // by which sides differ, the shortest first
+// share: by which sides may differ, the shortest first.
+inline bool alike_sizes(Vec3 a, Vec3 b, double share = 0.15) {
+    constexpr double at_least_m = 0.02;
     std::ranges::sort(a);
     std::ranges::sort(b);
     for (std::size_t n = 0; n < 3; ++n)

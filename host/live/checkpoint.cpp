@@ -2,14 +2,16 @@
 #include "live/checkpoint.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/field_rules.h"
 #include "io/replace_file.h"
 #include "io/text.h"
-#include "live/coarse_frame.h"
 #include "live/projection.h"
+#include "live/scan_kind.h"
 #include "points/formats/frame_sequence.h"
 #include "points/formats/rigid_pose.h"
 #include "scale/binary_file.h"
@@ -18,7 +20,7 @@ namespace topple::live {
 namespace {
 
 // Changes with what is written below.
-const std::string mark = "topple session 2";
+const std::string mark = "topple session 3";
 
 template <class Io, class Of>
 void intrinsics_fields(Io& io, Of& k) {
@@ -64,9 +66,16 @@ void fields(Io& io, Of& of) {
         each.expect(!io::make_rigid(rigid));
     });
     frames_below_next(of.frames.kept);
-    std::optional<std::size_t> pixels;
-    if (of.depth) pixels = Projection(Coarse(*of.depth).intrinsics()).pixels();
-    KnownThings::fields(io, of.remembered.things, pixels);
+    const std::size_t pixels = scan_kind(of)->projection().pixels();
+    KnownThings::fields(io, of.remembered.things, of.depth ? std::optional(pixels) : std::nullopt);
+    list_fields(io, of.remembered.gone, [&](auto& each, auto& thing) {
+        map_fields(each, thing, [&](auto& of_frame, auto& shown) {
+            of_frame(shown);
+            of_frame.expect(
+                std::ranges::all_of(shown, [&](std::uint32_t p) { return p < pixels; }));
+        });
+        frames_below_next(thing);
+    });
     map_fields(io, of.remembered.poses, [](auto& each, auto& pose) { each(pose, rules::finite); });
     frames_below_next(of.remembered.poses);
 }

@@ -5,8 +5,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/checksum.h"
+#include "live/gone_things.h"
 #include "live/kept_frame.h"
 #include "live/known_things.h"
 #include "topple/session.h"
@@ -29,6 +31,7 @@ struct KeptFrames {
 struct Remembered {
     KnownThings things;
     std::map<FrameId, Mat4> poses;  // that it was parsed from
+    std::vector<ThingPixels> gone;  // things that were left out
 };
 
 // What a session is beside its options.

@@ -59,10 +59,11 @@ class DepthFrames final : public ScanKind {
         view.intrinsics = coarse_.intrinsics();
         view.camera_to_world = {frame.pose};
         view.images = {view_of(image, view.intrinsics)};
-        Spots out;
-        out.pixel.resize(projection_.pixels());
-        std::iota(out.pixel.begin(), out.pixel.end(), 0u);
-        out.object = labeller.label(view, 0, threads).object;
+        return {spot_pixels(frame), labeller.label(view, 0, threads).object};
+    }
+    std::vector<std::uint32_t> spot_pixels(const PosedFrame&) const override {
+        std::vector<std::uint32_t> out(projection_.pixels());
+        std::iota(out.begin(), out.end(), 0u);
         return out;
     }
 

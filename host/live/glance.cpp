@@ -10,13 +10,6 @@
 
 namespace topple::live {
 
-std::vector<bool> seen_through_pixels(const Projection& by, const Gone& pixels) {
-    std::vector<bool> out(by.pixels());
-    for (const GonePixel& p : pixels)
-        out[std::size_t{p.v} * by.width() + p.u] = p.through_of_fitting > 0;
-    return out;
-}
-
 std::vector<Appeared> Glance::operator()(const LiveScene& scene, const FrameLabeller& labeller,
                                          const Frames& frames, const ParseOptions& options) const {
     constexpr std::size_t most_frames = 4;
@@ -50,9 +43,11 @@ std::vector<bool> Glance::came_in(const PosedFrame& frame, const Frames& frames,
     seen.push_back(posed_image(frame));
     const std::size_t last = seen.size() - 1;
     const Looks looks(by, seen, device_->threads());
-    const auto came = looks.seen_through(
-        [&](std::size_t n) { return std::pair(std::size_t{0}, n == last ? last : 0); });
-    return seen_through_pixels(by, came[last]);
+    const auto came =
+        looks.look([&](std::size_t n) { return std::pair(std::size_t{0}, n == last ? last : 0); });
+    std::vector<bool> out;
+    for (const Says says : came[last].says) out.push_back(says == Says::through);
+    return out;
 }
 
 }  // namespace topple::live

@@ -11,9 +11,6 @@
 
 namespace topple::live {
 
-// By pixel of an image: whether looks of frames that fit see through what it shows.
-std::vector<bool> seen_through_pixels(const Projection& by, const Gone& pixels);
-
 // Looks what came since a scene was parsed, from any thread, one at a time.
 class Glance {
   public:

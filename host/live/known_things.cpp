@@ -16,12 +16,16 @@ namespace {
 constexpr std::size_t none = ~std::size_t{0};
 // Of the pixels that show either of two, those that must show both.
 constexpr double least_shared = 0.1;
-// Of the pixels that show what came or has gone, those that must say so; of what moved aside.
-constexpr double most_of_it = 0.5, some_of_it = 0.1;
+// Of the pixels that show a thing, and of which is told, those that must be seen through where it
+// came or has gone; where it is left out, as it is no longer there; where it moved aside. And of
+// all of its pixels.
+constexpr double most_of_it = 0.5, much_of_it = 0.3, some_of_it = 0.1, least_told = 0.1;
 // Centres are found to so much.
 constexpr double aside_m = 0.05;
 // How much the weight of what moved may differ.
 constexpr double alike_mass = 0.3;
+// And its sides and weight, where it stands so near to where it was.
+constexpr double beside_m = 0.5, rough_share = 0.3, rough_mass = 4;
 
 struct Match {
     double alike;  // the more the better
@@ -65,28 +69,47 @@ std::vector<Match> by_pixels(const Showed& before, const ShownObjects& now) {
     return out;
 }
 
-// Of the pixels that show each of so many objects, the share with that flag. showed: by pixel, of
-// some of the frames.
+// Of the pixels that show each of so many objects, and of which some frames tell, the share that
+// these see through; 0 where they tell of too few. showed: by pixel, of some of the frames.
 std::vector<double> shares(std::size_t objects, const Showed& showed, const ShownObjects& shown,
-                           std::vector<bool> Shown::*flag) {
-    std::vector<double> all(objects), some(objects);
+                           std::vector<Says> Shown::*frames) {
+    std::vector<double> all(objects), told(objects), through(objects);
     for (const auto& [frame, pixels] : shown) {
         const auto of = showed.find(frame);
-        if (of == showed.end() || (pixels.*flag).size() != of->second.size()) continue;
+        if (of == showed.end() || (pixels.*frames).size() != of->second.size()) continue;
         for (std::size_t n = 0; n < of->second.size(); ++n) {
-            const std::int32_t o = of->second[n];
-            if (o < 0) continue;
-            ++all[static_cast<std::size_t>(o)];
-            some[static_cast<std::size_t>(o)] += (pixels.*flag)[n];
+            if (of->second[n] < 0) continue;
+            const auto o = static_cast<std::size_t>(of->second[n]);
+            const Says says = (pixels.*frames)[n];
+            ++all[o];
+            told[o] += says != Says::nothing;
+            through[o] += says == Says::through;
         }
     }
-    for (std::size_t o = 0; o < objects; ++o) some[o] /= std::max(1.0, all[o]);
-    return some;
+    for (std::size_t o = 0; o < objects; ++o)
+        through[o] = through[o] >= least_told * all[o] ? through[o] / std::max(1.0, told[o]) : 0;
+    return through;
 }
 
 }  // namespace
 
-std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& shown) {
+std::vector<ThingPixels> KnownThings::pixels(
+    const std::function<std::vector<std::uint32_t>(FrameId)>& pixels_of) const {
+    std::vector<ThingPixels> out(before_.size());
+    for (const auto& [frame, objects] : showed_) {
+        const std::vector<std::uint32_t> pixels = pixels_of(frame);
+        if (pixels.size() != objects.size()) continue;
+        for (std::size_t n = 0; n < objects.size(); ++n) {
+            const std::int32_t o = objects[n];
+            if (o >= 0 && before_[static_cast<std::size_t>(o)].id != 0)
+                out[static_cast<std::size_t>(o)][frame].push_back(pixels[n]);
+        }
+    }
+    return out;
+}
+
+std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& shown,
+                                     const std::vector<bool>& no_longer) {
     const std::size_t count = scene.objects.size();
     std::vector<std::size_t> before_of(count, none);
     std::vector<bool> taken(before_.size(), false);
@@ -102,33 +125,48 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
     const auto moved_m = [&](std::size_t b, std::size_t n) {
         return length(minus(scene.objects[n].box_middle_m, before_[b].middle_m));
     };
+    const auto roughly = [&](std::size_t b, std::size_t n) {
+        const Object& object = scene.objects[n];
+        return alike_sizes(object.size_m, before_[b].size_m, rough_share) &&
+               std::max(object.mass_kg, before_[b].mass_kg) <=
+                   rough_mass * std::min(object.mass_kg, before_[b].mass_kg);
+    };
     const auto like = [&](std::size_t b, std::size_t n) {
         const Object& object = scene.objects[n];
         return alike_sizes(object.size_m, before_[b].size_m) &&
                std::abs(object.mass_kg - before_[b].mass_kg) <=
                    alike_mass * std::max(object.mass_kg, before_[b].mass_kg);
     };
-    use_best(by_pixels(showed_, shown), before_of, taken);
+    const auto left = [&](std::size_t b) { return b < no_longer.size() && no_longer[b]; };
+    std::vector<Match> same = by_pixels(showed_, shown);
+    std::erase_if(same, [&](const Match& m) { return left(m.before) && !like(m.before, m.now); });
+    use_best(std::move(same), before_of, taken);
     // Of what is left those that are like each other, the nearest first.
-    const auto match_left = [&](const auto& may_be) {
+    const auto match_left = [&](const auto& may_be, const auto& alike) {
         std::vector<Match> pairs;
         for (std::size_t b = 0; b < before_.size(); ++b)
             for (std::size_t n = 0; n < count; ++n)
-                if (!taken[b] && before_of[n] == none && may_be(b, n) && like(b, n))
+                if (!taken[b] && before_of[n] == none && may_be(b, n) && alike(b, n))
                     pairs.push_back({-moved_m(b, n), b, n});
         use_best(std::move(pairs), before_of, taken);
     };
     // What no pixel shows, by its place.
-    match_left([&](std::size_t b, std::size_t n) { return moved_m(b, n) < aside_m; });
+    match_left([&](std::size_t b, std::size_t n) { return moved_m(b, n) < aside_m; }, like);
     Showed shows;
     for (const auto& [frame, pixels] : shown) shows[frame] = pixels.object;
-    const std::vector<double> gone = shares(before_.size(), showed_, shown, &Shown::gone);
-    const std::vector<double> came = shares(count, shows, shown, &Shown::came);
+    const std::vector<double> gone = shares(before_.size(), showed_, shown, &Shown::later);
+    const auto has_gone = [&](std::size_t b) {
+        return gone[b] >= (left(b) ? much_of_it : most_of_it);
+    };
+    const std::vector<double> came = shares(count, shows, shown, &Shown::earlier);
 
     const std::vector<bool> was_taken = taken;
-    match_left([&](std::size_t b, std::size_t n) {
-        return gone[b] >= most_of_it && came[n] >= most_of_it;
-    });
+    // What is no longer there and stands beside is another size to each pass, which saw other
+    // sides.
+    match_left([&](std::size_t b, std::size_t n) { return left(b) && moved_m(b, n) < beside_m; },
+               roughly);
+    match_left([&](std::size_t b, std::size_t n) { return has_gone(b) && came[n] >= most_of_it; },
+               like);
 
     std::vector<Before> now(count);
     bool named = building != before_.end();  // a building, with the number 0
@@ -163,8 +201,8 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
     }
     for (std::size_t b = 0; b < before_.size(); ++b)
         if (!taken[b])
-            out.push_back({.id = before_[b].id,
-                           .change = gone[b] >= most_of_it ? Change::gone : Change::lost});
+            out.push_back(
+                {.id = before_[b].id, .change = has_gone(b) ? Change::gone : Change::lost});
     before_ = std::move(now);
     showed_ = std::move(shows);
     return out;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/rotation.h"
@@ -53,24 +54,36 @@ class PointSweeps final : public ScanKind {
     PointCloud points(const PosedFrame& frame) const override { return frame.frame->points(); }
     Spots spots(const PosedFrame& frame, const DepthFrame&, const FrameLabeller& labeller,
                 unsigned threads) const override {
-        const PointCloud points = frame.frame->points();
-        const std::size_t every =
-            std::max<std::size_t>(1, (points.size() + most_spots - 1) / most_spots);
         PointCloud some;
         Spots out;
-        for (std::size_t i = 0; i < points.size(); i += every) {
-            const auto seen = projection_.see({points.x[i], points.y[i], points.z[i]});
-            if (!seen) continue;
-            out.pixel.push_back(static_cast<std::uint32_t>(seen->pixel));
-            some.x.push_back(points.x[i]);
-            some.y.push_back(points.y[i]);
-            some.z.push_back(points.z[i]);
-        }
+        each_spot(frame, [&](std::uint32_t pixel, const Vec3f& at) {
+            out.pixel.push_back(pixel);
+            some.x.push_back(at[0]);
+            some.y.push_back(at[1]);
+            some.z.push_back(at[2]);
+        });
         out.object = labeller.label(CloudView(some), frame.pose, threads).object;
+        return out;
+    }
+    std::vector<std::uint32_t> spot_pixels(const PosedFrame& frame) const override {
+        std::vector<std::uint32_t> out;
+        each_spot(frame, [&](std::uint32_t pixel, const Vec3f&) { out.push_back(pixel); });
         return out;
     }
 
   private:
+    using Vec3f = std::array<float, 3>;
+    template <class Visit>
+    void each_spot(const PosedFrame& frame, const Visit& visit) const {
+        const PointCloud points = frame.frame->points();
+        const std::size_t every =
+            std::max<std::size_t>(1, (points.size() + most_spots - 1) / most_spots);
+        for (std::size_t i = 0; i < points.size(); i += every) {
+            const Vec3f at{points.x[i], points.y[i], points.z[i]};
+            if (const auto seen = projection_.see(at))
+                visit(static_cast<std::uint32_t>(seen->pixel), at);
+        }
+    }
     static void append(const PointCloud& sweep, std::size_t i, const Mat4& pose, bool coloured,
                        PointCloud& all) {
         const Vec3 at = transformed(pose, {sweep.x[i], sweep.y[i], sweep.z[i]});

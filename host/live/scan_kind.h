@@ -42,6 +42,8 @@ class ScanKind {
         std::vector<std::uint32_t> pixel;
         std::vector<std::int32_t> object;
     };
+    // Those pixels alone.
+    virtual std::vector<std::uint32_t> spot_pixels(const PosedFrame& frame) const = 0;
     virtual Spots spots(const PosedFrame& frame, const DepthFrame& image,
                         const FrameLabeller& labeller, unsigned threads) const = 0;
 };

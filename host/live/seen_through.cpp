@@ -115,7 +115,7 @@ bool Looks::fit(std::size_t frame, std::size_t other) const {
     return now.through * before.seen <= (before.through + most_worse * before.seen) * now.seen;
 }
 
-std::vector<Gone> Looks::seen_through(const Asked& asked) const {
+std::vector<Looked> Looks::look(const Asked& asked) const {
     const Projection& by = projection_;
     std::vector<Camera> cameras;
     for (const DepthFrame& frame : frames_) cameras.emplace_back(frame.camera_to_world);
@@ -126,17 +126,19 @@ std::vector<Gone> Looks::seen_through(const Asked& asked) const {
             ++looks;
             through += look == Look::through;
         }
-        std::uint8_t most() const {
-            return static_cast<std::uint8_t>(2 * through > looks ? through : 0);
+        Says says() const {
+            if (2 * through == looks) return Says::nothing;
+            return 2 * through > looks ? Says::through : Says::same;
         }
     };
     struct Other {
         std::size_t frame;
         bool fits;
     };
-    std::vector<Gone> out(frames_.size());
+    std::vector<Looked> out(frames_.size());
     threads_.each(frames_.size(), 1, [&](std::size_t n) {
         const auto [first, last] = asked(n);
+        out[n].says.resize(by.pixels());
         std::vector<Other> others;
         for (std::size_t other = last; other-- > first && others.size() < most_asked;)
             if (look_alike(by, frames_[n].camera_to_world, frames_[other].camera_to_world))
@@ -155,8 +157,10 @@ std::vector<Gone> Looks::seen_through(const Asked& asked) const {
                     if (other.fits) fitting.add(look);
                     if (fitting.looks == most_looks) break;
                 }
-                if (all.most() > 0 || fitting.most() > 0)
-                    out[n].push_back({u, v, stored, all.most(), fitting.most()});
+                if (all.says() == Says::through)
+                    out[n].through.push_back(
+                        {u, v, stored, static_cast<std::uint8_t>(all.through)});
+                out[n].says[std::size_t{v} * by.width() + u] = fitting.says();
             }
         }
     });

@@ -15,18 +15,26 @@
 
 namespace topple::live {
 
-// A pixel, the depth that it holds, and how many looks saw through its place: most of the first
-// three, and most of the first three of frames that fit this one.
+// A pixel, the depth that it holds, and how many looks see through its place: most of the first
+// three.
 struct GonePixel {
     std::uint32_t u, v;
     std::uint16_t stored;
-    std::uint8_t through, through_of_fitting;
+    std::uint8_t through;
     // Of one look, noise and poses may be too far off.
     bool is_sure() const { return through >= 2; }
 };
 // What is left out with it lies around it, and is about as far away.
 inline constexpr double alike_depth_m = 0.05;
 using Gone = std::vector<GonePixel>;
+// What most of the first three looks of frames that fit say of a place: that it is as it was, that
+// they see through it; nothing, too, where they are undecided.
+enum class Says : std::uint8_t { nothing, same, through };
+// What those asked about a frame say of its image.
+struct Looked {
+    Gone through;
+    std::vector<Says> says;  // by pixel
+};
 
 // Which others are asked about a frame: [first, last) of those given, the last ones first.
 using Asked = std::function<std::pair<std::size_t, std::size_t>(std::size_t frame)>;
@@ -43,11 +51,10 @@ class Looks {
     // poses at an earlier time, of those that were there; none: of no frame.
     Looks(const Projection& projection, std::span<const DepthFrame> frames, ThreadPool& threads,
           std::vector<std::optional<Mat4>> earlier = {});
-    // Of each frame the pixels that show places which those asked see through: of later ones, what
-    // was there has gone since; of earlier ones, it has come. It takes most of the first three
-    // looks. `through` depends on the frames and their poses alone, through_of_fitting on the
-    // earlier poses, too.
-    std::vector<Gone> seen_through(const Asked& asked) const;
+    // Of each frame. What later ones see through has gone since; what earlier ones do, has come. It
+    // takes most of the first three looks. `through` depends on the frames and their poses alone,
+    // what those say that fit on the earlier poses, too.
+    std::vector<Looked> look(const Asked& asked) const;
 
   private:
     struct Camera;

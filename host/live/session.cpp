@@ -13,13 +13,12 @@
 #include <utility>
 
 #include "core/checksum.h"
-#include "core/random.h"
 #include "device/cancelling.h"
 #include "live/checkpoint.h"
 #include "live/frame_store.h"
 #include "live/glance.h"
+#include "live/passes.h"
 #include "live/scan_kind.h"
-#include "live/seen_through.h"
 #include "points/caller_frames.h"
 #include "points/caller_points.h"
 #include "points/formats/rigid_pose.h"
@@ -32,17 +31,8 @@
 namespace topple {
 namespace {
 
-// Things are told by this many frames at most, the same ones as long as these are not too many.
-constexpr std::size_t most_telling = 96;
-
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds no_budget{0}, most_budget{86'400'000};  // no clock runs over
-
-// One that has nothing to do with when it was taken: of a camera that swings to and fro, each
-// second frame looks the same way.
-std::uint64_t number_of(FrameId frame) {
-    return Random(frame).bits();
-}
 
 // source: what messages call it.
 FramesView one_frame(const Intrinsics& k, const std::optional<Intrinsics>& colour,
@@ -236,16 +226,19 @@ class Session::State {
         auto [frames, changes] = frames_.snapshot();
         if (changes == parsed_changes_) return;
         live::Remembered remembered = this->remembered();
-        const Passed passed = passed_through(frames, remembered.poses);
+        const live::Passes passes(frames, *kind_, remembered.poses,
+                                  options_.parse.device->threads());
         auto found = std::make_shared<LiveScene>();
         for (const auto& [frame, kept] : frames) found->frames.push_back(frame);
         found->number = ++parses_;
         bool left_out = false;
-        const std::span<const live::Gone> gone(passed.gone);
-        found->result = parsed(frames, options_.forget_gone ? gone : gone.first(0), left_out);
+        std::vector<live::Gone> gone;
+        std::vector<bool> no_longer;
+        if (options_.forget_gone) gone = passes.leave_out(remembered, no_longer);
+        found->result = parsed(frames, gone, left_out);
         auto labeller = std::make_shared<const FrameLabeller>(*found->result);
         found->things =
-            remembered.things.name(found->result->scene, shown(frames, passed, *labeller));
+            remembered.things.name(found->result->scene, passes.shown(*labeller), no_longer);
         remembered.poses.clear();
         for (const auto& [frame, kept] : frames) remembered.poses[frame] = kept.pose;
         of_all_ = left_out ? nullptr : found->result;
@@ -293,59 +286,6 @@ class Session::State {
             end_if_cancelled(options_.parse);
         }
     }
-    // The frames as they tell of things, and what others see through of each: later ones; and of
-    // those after the ones of the last update, whose poses these are, earlier ones.
-    struct Passed {
-        std::vector<DepthFrame> seen;
-        std::vector<live::Gone> gone, came;
-    };
-    Passed passed_through(const Frames& frames, const std::map<FrameId, Mat4>& poses) const {
-        const FrameId first_new = poses.empty() ? 0 : poses.rbegin()->first + 1;
-        Passed out;
-        std::size_t old = 0;
-        std::vector<std::optional<Mat4>> earlier;
-        for (const auto& [frame, kept] : frames) {
-            old += frame < first_new;
-            const auto parsed = poses.find(frame);
-            earlier.push_back(parsed == poses.end() ? std::nullopt : std::optional(parsed->second));
-            out.seen.push_back(live::posed_image(kept));
-        }
-        const live::Looks looks(kind_->projection(), out.seen, options_.parse.device->threads(),
-                                std::move(earlier));
-        const std::size_t all = out.seen.size();
-        out.gone = looks.seen_through([&](std::size_t n) { return std::pair(n + 1, all); });
-        out.came = looks.seen_through(
-            [&](std::size_t n) { return std::pair(std::size_t{0}, n < old ? 0 : old); });
-        return out;
-    }
-    // What some of the frames show.
-    live::ShownObjects shown(const Frames& frames, const Passed& passed,
-                             const FrameLabeller& labeller) const {
-        std::uint64_t every = 1;
-        const auto telling = [&] {
-            return static_cast<std::size_t>(std::ranges::count_if(
-                frames, [&](const auto& kept) { return number_of(kept.first) % every == 0; }));
-        };
-        while (telling() > most_telling) every *= 2;
-        const auto flags = [&](const live::Gone& pixels, const std::vector<std::uint32_t>& spots) {
-            const std::vector<bool> flagged =
-                live::seen_through_pixels(kind_->projection(), pixels);
-            std::vector<bool> out;
-            for (const std::uint32_t pixel : spots) out.push_back(flagged[pixel]);
-            return out;
-        };
-        live::ShownObjects out;
-        std::size_t n = 0;
-        for (auto at = frames.begin(); at != frames.end(); ++at, ++n) {
-            if (number_of(at->first) % every != 0) continue;
-            live::ScanKind::Spots spots =
-                kind_->spots(at->second, passed.seen[n], labeller, threads_);
-            out[at->first] = {std::move(spots.object), flags(passed.gone[n], spots.pixel),
-                              flags(passed.came[n], spots.pixel)};
-        }
-        return out;
-    }
-
     const std::unique_ptr<const live::ScanKind> kind_;
     const std::optional<Intrinsics> depth_, colour_;  // none: of points
     SessionOptions options_;

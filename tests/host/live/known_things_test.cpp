@@ -24,9 +24,10 @@ Object building() {
 // Of one frame; of it nothing came or has gone.
 ShownObjects shown(std::vector<std::int32_t> objects) {
     const std::size_t count = objects.size();
-    return {{0, {std::move(objects), std::vector<bool>(count), std::vector<bool>(count)}}};
+    return {{0, {std::move(objects), std::vector<Says>(count), std::vector<Says>(count)}}};
 }
 
+constexpr Says no = Says::nothing, yes = Says::through;
 constexpr Vec3 cup{0.08, 0.08, 0.1}, box{0.4, 0.3, 0.3};
 
 TEST(KnownThings, ThoseThatTheSamePixelsShowKeepTheirIds) {
@@ -43,7 +44,7 @@ TEST(KnownThings, ThoseThatTheSamePixelsShowKeepTheirIds) {
     // Other numbers, another room's frame, and one pixel that changed sides.
     scene.objects = {building(), object({7, 0, 0}, box, 9), object({6, 0, 0}, cup, 0.3)};
     ShownObjects now = shown({0, 0, 2, 2, 1, 1, 2, -1});
-    now[4] = {{1, 1}, {false, false}, {false, false}};
+    now[4] = {{1, 1}, {no, no}, {no, no}};
     const auto second = known.name(scene, now);
     ASSERT_EQ(second.size(), 3u);
     EXPECT_EQ(second[1].id, 2u);
@@ -78,10 +79,8 @@ TEST(KnownThings, WhatIsElsewhereHasMovedAndTheRestComesAndGoes) {
     scene.objects = {building(), object({1, 0.5, 0}, {0.1, 0.08, 0.08}, 0.35),
                      object({3, 0, 0}, {1, 1, 1}, 90), object({3, 3, 0}, {1, 1, 1}, 20)};
     ShownObjects now = shown({0, -1, -1, 0, 0, -1, -1});
-    now[0].gone = {false, true, true, true, false, false, false};
-    now[1] = {{1, 1, 2, 2, 3, 3},
-              {false, false, false, false, false, false},
-              {true, true, true, true, false, false}};
+    now[0].later = {no, yes, yes, yes, no, no, no};
+    now[1] = {{1, 1, 2, 2, 3, 3}, {no, no, no, no, no, no}, {yes, yes, yes, yes, no, no}};
     const auto things = known.name(scene, now);
     ASSERT_EQ(things.size(), 6u);
     EXPECT_EQ(things[1].id, 1u);
@@ -110,7 +109,7 @@ TEST(KnownThings, WhatStandsALittleAsideHasMoved) {
     ShownObjects now = shown({0, -1, 1, 1, 1});
     EXPECT_EQ(known.name(scene, now)[1].change, Change::none);
     scene.objects[1].box_middle_m[1] = 0.2;
-    now[0].gone[1] = true;
+    now[0].later[1] = yes;
     known.name(scene, shown({0, 1, 1, 1, 1}));
     scene.objects[1].box_middle_m[1] = 0.3;
     EXPECT_EQ(known.name(scene, now)[1].change, Change::moved);

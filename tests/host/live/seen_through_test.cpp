@@ -28,9 +28,12 @@ DepthFrame frame(std::uint16_t board_mm, double x_m = 0) {
 
 std::vector<Gone> gone(const std::vector<DepthFrame>& frames) {
     ThreadPool threads(2);
-    return Looks(Projection(k), frames, threads).seen_through([&](std::size_t n) {
-        return std::pair(n + 1, frames.size());
-    });
+    std::vector<Gone> out;
+    for (Looked& looked : Looks(Projection(k), frames, threads).look([&](std::size_t n) {
+             return std::pair(n + 1, frames.size());
+         }))
+        out.push_back(std::move(looked.through));
+    return out;
 }
 
 TEST(SeenThrough, WhatLaterFramesSeeBehindHasGone) {
@@ -62,13 +65,12 @@ TEST(SeenThrough, PosesThatAreOffTellNothing) {
     const auto found = [&](double off_m, const std::vector<std::optional<Mat4>>& earlier) {
         std::vector<DepthFrame> frames{frame(2000), frame(0), frame(0), frame(0)};
         for (std::size_t n = 1; n < 4; ++n) frames[n].camera_to_world[11] = off_m;
-        const Gone gone =
-            Looks(Projection(k), frames, threads, earlier).seen_through([&](std::size_t n) {
+        const Looked looked =
+            Looks(Projection(k), frames, threads, earlier).look([&](std::size_t n) {
                 return std::pair(n + 1, frames.size());
             })[0];
-        return std::pair(std::ssize(gone), std::ranges::count_if(gone, [](const GonePixel& p) {
-                             return p.through_of_fitting > 0;
-                         }));
+        return std::pair(std::ssize(looked.through),
+                         std::ranges::count(looked.says, Says::through));
     };
     constexpr std::ptrdiff_t board = 400, all = 46 * 62;
     EXPECT_EQ(found(0, {}), std::pair(board, board));
@@ -85,12 +87,11 @@ TEST(SeenThrough, PosesThatAreOffTellNothing) {
     // 0.3 m to the side: they fit, but for the board's edge, and did so better before.
     std::vector<DepthFrame> frames{frame(2000), frame(2000, 0.3)};
     const auto edge = [&](const std::vector<std::optional<Mat4>>& earlier) {
-        const Gone gone =
-            Looks(Projection(k), frames, threads, earlier).seen_through([&](std::size_t n) {
+        const Looked looked =
+            Looks(Projection(k), frames, threads, earlier).look([&](std::size_t n) {
                 return std::pair(n + 1, frames.size());
             })[0];
-        return std::ranges::any_of(gone,
-                                   [](const GonePixel& p) { return p.through_of_fitting > 0; });
+        return std::ranges::count(looked.says, Says::through) > 0;
     };
     EXPECT_TRUE(edge({}));
     EXPECT_FALSE(edge({right, right}));
