@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -98,8 +99,8 @@ void weigh(JointedFront& front, double density_kg_m3) {
 // Takes what a front weighs out of its body, so that both together are what the body was. False
 // where the rest would be no rigid body.
 bool take_out(const JointedFront& front, Body& body) {
-    constexpr double most_share = 0.3;
-    if (!has_inertia(body) || front.mass_kg > most_share * body.mass_kg) return false;
+    if (body.fixed) return true;
+    if (!has_inertia(body) || front.mass_kg >= body.mass_kg) return false;
     Body rest = body;
     rest.mass_kg -= front.mass_kg;
     const Eigen::Vector3d center =
@@ -209,10 +210,17 @@ bool is_handle(const Front& front, const Body& body) {
     });
 }
 
+double volume_m3(std::span<const Box> boxes) {
+    double out = 0;
+    for (const Box& box : boxes) out += volume_m3(box);
+    return out;
+}
+
 // The boards and the handle, as large as there is room for among the other bodies, which give way a
-// little; and where that is not within the furniture, right before it; none where there is none for
-// the front's board.
-std::vector<Box> boxes_of(Front& front, double deep_m, std::vector<Body>& bodies, std::size_t own) {
+// little, and no larger than `most_m3`; and where that is not within the furniture, right before
+// it; none where there is none for the front's board.
+std::vector<Box> boxes_of(Front& front, double deep_m, double most_m3, std::vector<Body>& bodies,
+                          std::size_t own) {
     constexpr double least_long_m = 0.1, shorter_m = 0.05;
     const Vec3 face = front.middle;
     for (const auto& [before_m, inset_m] : {std::pair(0.0, clear_m),
@@ -222,16 +230,18 @@ std::vector<Box> boxes_of(Front& front, double deep_m, std::vector<Body>& bodies
                                             {board_m, 0.02}}) {
         front.middle = along(face, before_m, front.out);
         std::vector<Box> out{board_of(front, inset_m)};
-        if (!make_room(out[0], bodies, own)) continue;
+        if (volume_m3(out) > most_m3 || !make_room(out[0], bodies, own)) continue;
         for (double long_m = front.opening == Opening::slide ? deep_m - board_m : 0;
              long_m >= least_long_m; long_m -= shorter_m) {
             const std::vector<Box> tray = tray_of(front, inset_m, long_m);
-            if (!are_free(tray, bodies, own)) continue;
+            if (volume_m3(out) + volume_m3(tray) > most_m3 || !are_free(tray, bodies, own))
+                continue;
             out.insert(out.end(), tray.begin(), tray.end());
             break;
         }
         const Box grip = box_of(front, front.grip, front.grip_m);
-        if (are_free({&grip, 1}, bodies, own)) out.push_back(grip);
+        if (volume_m3(out) + volume_m3(grip) <= most_m3 && are_free({&grip, 1}, bodies, own))
+            out.push_back(grip);
         return out;
     }
     return {};
@@ -240,11 +250,15 @@ std::vector<Box> boxes_of(Front& front, double deep_m, std::vector<Body>& bodies
 }  // namespace
 
 std::vector<JointedFront> place_fronts(std::vector<Body>& bodies,
-                                       const std::vector<std::vector<Front>>& of_object) {
+                                       const std::vector<std::vector<Front>>& of_object,
+                                       double density_kg_m3) {
     constexpr double behind_m = 0.05, most_deep_m = 0.6;  // of a drawer, from what is behind it
+    constexpr double most_share = 0.3;                    // of what its body still weighs
     std::vector<JointedFront> out;
     for (std::size_t n = 0; n < std::min(bodies.size(), of_object.size()); ++n) {
         if (bodies[n].parts.empty()) continue;
+        double left_kg =
+            bodies[n].fixed ? std::numeric_limits<double>::infinity() : bodies[n].mass_kg;
         for (const Front& front : of_object[n]) {
             const double deep_m = std::min(most_deep_m, front.deep_m - behind_m);
             JointedFront made;
@@ -252,15 +266,16 @@ std::vector<JointedFront> place_fronts(std::vector<Body>& bodies,
             made.body = n;
             made.middle = plus(front.middle, bodies[n].moved_m);
             made.grip = plus(front.grip, bodies[n].moved_m);
-            std::vector<std::pair<std::size_t, std::vector<ConvexPart>>> handles;
             for (std::size_t other = 0; other < bodies.size(); ++other)
                 if (other != n && is_handle(made, bodies[other]))
-                    handles.emplace_back(other, std::exchange(bodies[other].parts, {}));
-            made.boxes = boxes_of(made, deep_m, bodies, n);
+                    made.handles.emplace_back(other, std::exchange(bodies[other].parts, {}));
+            made.boxes = boxes_of(made, deep_m, most_share * left_kg / density_kg_m3, bodies, n);
             if (made.boxes.empty()) {
-                for (auto& [other, parts] : handles) bodies[other].parts = std::move(parts);
+                for (auto& [other, parts] : made.handles) bodies[other].parts = std::move(parts);
                 continue;
             }
+            weigh(made, density_kg_m3);
+            left_kg -= made.mass_kg;
             add_axis(deep_m, made);
             out.push_back(std::move(made));
         }
@@ -268,16 +283,19 @@ std::vector<JointedFront> place_fronts(std::vector<Body>& bodies,
     return out;
 }
 
-void joint_fronts(std::vector<JointedFront>& fronts, std::vector<Body>& bodies,
-                  double density_kg_m3) {
+void joint_fronts(std::vector<JointedFront>& fronts, std::vector<Body>& bodies) {
     std::vector<std::size_t> number(bodies.size(), 0);
     std::erase_if(fronts, [&](JointedFront& front) {
         Body& body = bodies[front.body];
-        if (!are_free(front.boxes, bodies, front.body)) return true;
-        weigh(front, density_kg_m3);
-        if (!body.fixed && !take_out(front, body)) return true;
-        front.name = body_name(body, front.body) + "_front_" + std::to_string(number[front.body]++);
-        return false;
+        if (are_free(front.boxes, bodies, front.body) && take_out(front, body)) {
+            front.name =
+                body_name(body, front.body) + "_front_" + std::to_string(number[front.body]++);
+            return false;
+        }
+        for (auto& [other, parts] : front.handles)
+            for (ConvexPart& part : parts)
+                if (!meets(bodies, part, body)) body.parts.push_back(std::move(part));
+        return true;
     });
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "export/body.h"
@@ -14,6 +16,9 @@ struct JointedFront : Front {
     std::string name;        // object_ID_front_N
     std::size_t body = 0;    // what it is a part of: place in the scene's list
     std::vector<Box> boxes;  // they touch its body, and one another; simulators leave that out
+    // Things that were found where its handle is, by place in the scene's list, with the parts that
+    // they had: they are things no more.
+    std::vector<std::pair<std::size_t, std::vector<ConvexPart>>> handles;
     double mass_kg = 0;
     Vec3 center_m{};
     Mat3 inertia_kg_m2{};
@@ -27,16 +32,16 @@ struct JointedFront : Front {
     double damping() const { return slides() ? 10 : 0.5; }
 };
 
-// The fronts of each object, of boards of the thickness of closed furniture's, where there is room
-// for them: other bodies are cut back by little, and handles that were found as things are things
-// no more. What has no parts has no fronts. Before bodies are stood on feet, as what is cut may be
+// The fronts of each object, of boards of the thickness and density of closed furniture's, where
+// there is room for them, and their body can spare what they weigh: other bodies are cut back by
+// little. What has no parts has no fronts. Before bodies are stood on feet, as what is cut may be
 // what they stand on.
 std::vector<JointedFront> place_fronts(std::vector<Body>& bodies,
-                                       const std::vector<std::vector<Front>>& of_object);
+                                       const std::vector<std::vector<Front>>& of_object,
+                                       double density_kg_m3);
 
-// Makes them bodies of their own, of a density of closed furniture's, whose mass is taken from
-// their body's. Those go that feet and pads were put into, or that their body can't be without.
-void joint_fronts(std::vector<JointedFront>& fronts, std::vector<Body>& bodies,
-                  double density_kg_m3);
+// Makes them bodies of their own, whose mass is taken from their body's. Those go that feet and
+// pads were put into; then their handles are parts of what they are at.
+void joint_fronts(std::vector<JointedFront>& fronts, std::vector<Body>& bodies);
 
 }  // namespace topple::exports

@@ -138,7 +138,7 @@ SimScene without_visuals(const Scene& scene, const SolidScene& solids, bool join
     settle(out.bodies, std::max(known_m, solids.voxel_m() / 2));
     separate(out.bodies);
     clear_sides(out.bodies);
-    if (joints) out.fronts = place_fronts(out.bodies, fronts_of(scene));
+    if (joints) out.fronts = place_fronts(out.bodies, fronts_of(scene), scene.density_kg_m3);
     // Cuts have added corners.
     for (Body& body : out.bodies)
         for (ConvexPart& part : body.parts)
@@ -146,7 +146,7 @@ SimScene without_visuals(const Scene& scene, const SolidScene& solids, bool join
                 part = simplified(std::move(part), fine_voxels * solids.voxel_m());
     brace(out.bodies, solids.voxel_m() / 2);
     keep_balance(out.bodies, {out.friction, out.gravity_m_s2, solids.voxel_m() / 2});
-    joint_fronts(out.fronts, out.bodies, scene.density_kg_m3);
+    joint_fronts(out.fronts, out.bodies);
     if (made.floor) {
         out.floor_m = made.floor->high[2];
         out.free_place = free_place(*made.floor, out.bodies);

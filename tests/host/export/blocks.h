@@ -63,8 +63,8 @@ inline SolidScene solids_of(const std::vector<Cells>& blocks, std::size_t primit
 inline std::vector<JointedFront> fronts_on_joints(std::vector<Body>& bodies,
                                                   const std::vector<std::vector<Front>>& of_object,
                                                   double density_kg_m3) {
-    std::vector<JointedFront> out = place_fronts(bodies, of_object);
-    joint_fronts(out, bodies, density_kg_m3);
+    std::vector<JointedFront> out = place_fronts(bodies, of_object, density_kg_m3);
+    joint_fronts(out, bodies);
     return out;
 }
 

@@ -249,5 +249,33 @@ TEST(JointedFronts, AHandleThatWasFoundAsAThingIsPartOfItsFront) {
     EXPECT_FALSE(bodies[2].parts.empty());
 }
 
+// Before anything is cut back, or taken from a handle.
+TEST(JointedFronts, WhatTheirBodyCannotSpareTouchesNothing) {
+    const Front drawer = drawer_of_a_cabinet();
+    std::vector<Body> bodies{body_of(block({0, 0, 0}, {0.8, 0.5, 0.7}), 1, {}),
+                             body_of(block({0.33, -0.035, 0.485}, {0.47, 0.005, 0.515}), 2, {0}),
+                             body_of(block({-0.5, -0.2, 0}, {0.1, 0.5, 1}), 0, {})};
+    bodies[0].mass_kg = 5;
+    bodies[2].solid_m3 = bodies[2].parts[0].volume_m3;
+    std::erase_if(bodies[2].parts[0].solid, [](const Vec3& p) { return p[0] > 0; });
+    EXPECT_TRUE(place_fronts(bodies, {{drawer}}, 700).empty());
+    EXPECT_EQ(bodies[1].parts.size(), 1u);
+    EXPECT_NEAR(bodies[2].parts[0].high[0], 0.1, 1e-9);
+}
+
+TEST(JointedFronts, WhereAFootIsInTheWayTheHandleIsPartOfTheFurniture) {
+    std::vector<Body> bodies{body_of(block({0, 0, 0}, {0.8, 0.5, 0.7}), 1, {}),
+                             body_of(block({0.33, -0.035, 0.485}, {0.47, 0.005, 0.515}), 2, {0})};
+    std::vector<JointedFront> fronts = place_fronts(bodies, {{drawer_of_a_cabinet()}}, 700);
+    ASSERT_EQ(fronts.size(), 1u);
+    EXPECT_TRUE(bodies[1].parts.empty());
+    const double mass_kg = bodies[0].mass_kg;
+    bodies.push_back(body_of(block({0.2, -0.02, 0}, {0.25, 0.3, 0.5}), 1, {}));
+    joint_fronts(fronts, bodies);
+    EXPECT_TRUE(fronts.empty());
+    EXPECT_EQ(bodies[0].parts.size(), 2u);
+    EXPECT_EQ(bodies[0].mass_kg, mass_kg);
+}
+
 }  // namespace
 }  // namespace topple::exports::test
