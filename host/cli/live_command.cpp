@@ -27,7 +27,7 @@ namespace {
 constexpr const char* standard_input = "-";
 
 struct LiveArguments {
-    std::string from, out, backend = "auto", up;
+    std::string from, out, backend = "auto", up, checkpoint;
     SessionOptions options;
     std::optional<double> idle_s;
     unsigned threads = 0;
@@ -93,11 +93,6 @@ std::unique_ptr<live::Feed> feed_of(const std::string& named, const std::string&
     return std::make_unique<live::GrowingFolder>(named);
 }
 
-LiveScene with_numbers_of(const live::Feed& feed, LiveScene found) {
-    for (FrameId& frame : found.frames) frame = feed.number_of(frame);
-    return found;
-}
-
 int run(LiveArguments& a) {
     constexpr auto pause = std::chrono::milliseconds(100);
     constexpr std::size_t most_at_once = 500;
@@ -107,6 +102,9 @@ int run(LiveArguments& a) {
     const bool is_folder = a.from != standard_input;
     const std::string called = is_folder ? a.from : "standard input";
     const auto feed = feed_of(a.from, called, a.out);
+    // Whether the file is there or not.
+    if (!a.checkpoint.empty())
+        io::check_not_replaced(std::filesystem::absolute(a.checkpoint).parent_path(), a.out);
     a.options.parse.device = device::open_device(a.backend, a.threads);
     a.options.parse.cancelled = [] { return interrupted() != 0; };
     a.options.source = called;
@@ -131,12 +129,20 @@ int run(LiveArguments& a) {
     reading.told = [&](const std::string& line) { print_to(stderr, "%s\n", line.c_str()); };
     try {
         while (interrupted() == 0) {
-            if (!session) session = feed->begin(a.options);
+            if (!session) {
+                session = feed->begin(a.options, a.checkpoint);
+                if (session && session->next_frame() > 0 && !a.quiet)
+                    print("going on from %s: %s\n", a.checkpoint.c_str(),
+                          io::counted(session->frames().size(), "frame").c_str());
+                // At once, as one that can't be written is of no use.
+                if (session && !a.checkpoint.empty()) session->checkpoint(a.checkpoint);
+            }
             if (session && feed->read(*session, reading)) {
                 if (!a.quiet) print_glance(*session);
                 const auto start = Clock::now();
                 const auto found = session->update();
-                write_outputs(with_numbers_of(*feed, *found), a.out, output);
+                write_outputs(*found, a.out, output);
+                if (!a.checkpoint.empty()) session->checkpoint(a.checkpoint);
                 written = found->frames.size();
                 if (!a.quiet) print_changes(*found, since_s(start));
                 last = Clock::now();
@@ -191,6 +197,10 @@ Command add_live(CLI::App& app) {
     app.add_flag_function(
         "--keep-gone", [a](std::int64_t) { a->options.forget_gone = false; },
         "Count readings, too, at places that later frames see through");
+    app.add_option(
+        "--checkpoint", a->checkpoint,
+        "File that is written with each update, and gone on from where it is there: frames,\n"
+        "and the ids of things, outlive a crash");
     app.add_option(
            "--idle", a->idle_s,
            "Seconds without anything new after which it ends (default: at Ctrl-C); exit code 1\n"

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "topple/session.h"
@@ -16,8 +18,11 @@ class Feed {
   public:
     virtual ~Feed() = default;
 
-    // A session of what comes; null as long as it is not known what that is.
-    virtual std::unique_ptr<Session> begin(const SessionOptions& options) = 0;
+    // A session of what comes, or that goes on from a checkpoint, where there is such a file; null
+    // as long as it is not known what comes. Throws Error(input) where the checkpoint is of
+    // something else. The session's numbers of frames are those that the feed gives them.
+    virtual std::unique_ptr<Session> begin(const SessionOptions& options,
+                                           const std::filesystem::path& checkpoint) = 0;
 
     struct Reading {
         std::size_t most = SIZE_MAX;  // frames that are added at once
@@ -28,8 +33,6 @@ class Feed {
     // Adds the frames that have come, and corrects poses that are others now; whether there were
     // any. A frame that the session refuses is left out.
     virtual bool read(Session& session, const Reading& how) = 0;
-    // What the feed calls a frame of the session: there may be others before it that were left out.
-    virtual std::uint64_t number_of(FrameId frame) const = 0;
     // Why it goes on no further now; empty: nothing is wrong.
     const std::string& waits_for() const { return waits_for_; }
     // Whether nothing more can come; then waits_for() says what was wrong, if anything.
@@ -42,6 +45,10 @@ class Feed {
     }
 
   protected:
+    // Of frames of such a camera; none: of sweeps of points.
+    static std::unique_ptr<Session> session_of(const std::optional<Intrinsics>& camera,
+                                               const SessionOptions& options,
+                                               const std::filesystem::path& checkpoint);
     std::string waits_for_;
 };
 

@@ -68,6 +68,11 @@ FrameId FrameStore::add(Checksum& readings, const Mat4& rigid, const Mat4& given
     return frames_.next++;
 }
 
+void FrameStore::skip() {
+    const std::lock_guard lock(mutex_);
+    ++frames_.next;
+}
+
 void FrameStore::correct(const std::map<FrameId, Mat4>& poses) {
     for (auto [frame, pose] : poses) {
         if (frame >= frames_.next) no_such(frame);

@@ -27,7 +27,9 @@ class FrameStore {
     FrameStore(KeptFrames from, std::uint64_t most_bytes,
                std::function<DepthFrame(const KeptFrame&)> image);
 
-    FrameId next() const { return frames_.next; }  // for the thread that adds
+    // For the thread that adds.
+    FrameId next() const { return frames_.next; }
+    void skip();
     // Throws Error(input) for the frame before once more. readings: of what it holds, its pose not
     // yet. rigid: its pose, made so; given: as it was given.
     FrameId add(Checksum& readings, const Mat4& rigid, const Mat4& given,

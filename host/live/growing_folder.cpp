@@ -34,21 +34,22 @@ std::optional<Intrinsics> GrowingFolder::intrinsics() {
                              [&] { return io::FrameSequence::open(folder_).intrinsics(); });
 }
 
-std::unique_ptr<Session> GrowingFolder::begin(const SessionOptions& options) {
+std::unique_ptr<Session> GrowingFolder::begin(const SessionOptions& options,
+                                              const std::filesystem::path& checkpoint) {
     const auto found = intrinsics();
-    return found ? std::make_unique<Session>(*found, std::nullopt, options) : nullptr;
-}
-
-std::uint64_t GrowingFolder::number_of(FrameId frame) const {
-    return static_cast<std::uint64_t>(std::ranges::find(known_, frame, &Known::frame) -
-                                      known_.begin());
+    if (!found) return nullptr;
+    auto session = session_of(found, options, checkpoint);
+    poses_.assign(session->next_frame(), std::nullopt);
+    // No image's: all are corrected.
+    for (const FrameId frame : session->frames()) poses_[frame] = Mat4{};
+    return session;
 }
 
 std::string GrowingFolder::missing_from(const std::string& out) const {
     if (damaged_ == 0) return Feed::missing_from(out);
     if (out.empty()) return first_damaged_;
     return first_damaged_ + "; " + io::counted(damaged_, "damaged image") + " of " +
-           std::to_string(known_.size()) + " left out of " + out;
+           std::to_string(poses_.size()) + " left out of " + out;
 }
 
 GrowingFolder::Stamps GrowingFolder::stamps_of(const io::FrameSequence& frames, std::size_t image) {
@@ -79,8 +80,9 @@ bool GrowingFolder::is_damaged(const io::FrameSequence& frames, std::size_t imag
     return false;
 }
 
-void GrowingFolder::leave_out_damaged(const Reading& how) {
-    known_.emplace_back();
+void GrowingFolder::leave_out_damaged(Session& session, const Reading& how) {
+    poses_.emplace_back();
+    session.skip_frame();
     unread_.clear();
     if (damaged_++ == 0) first_damaged_ = waits_for_;
     if (how.told) how.told(waits_for_ + "; it is left out");
@@ -92,33 +94,34 @@ bool GrowingFolder::read(Session& session, const Reading& how) {
     const auto frames =
         unless_unfinished(waits_for_, [&] { return io::FrameSequence::open(folder_); });
     if (!frames) return false;
-    if (frames->size() < known_.size())
+    if (frames->size() < poses_.size())
         io::fail(folder_, "has " + std::to_string(frames->size()) + " depth images, but had " +
-                              std::to_string(known_.size()) +
+                              std::to_string(poses_.size()) +
                               "; frames may come, but none may go while it is followed");
     std::map<FrameId, Mat4> corrected;
-    for (std::size_t n = 0; n < known_.size(); ++n) {
-        if (!known_[n].frame || known_[n].pose == frames->poses()[n]) continue;
-        corrected[*known_[n].frame] = known_[n].pose = frames->poses()[n];
+    for (std::size_t n = 0; n < poses_.size(); ++n) {
+        if (!poses_[n] || *poses_[n] == frames->poses()[n]) continue;
+        poses_[n] = corrected[n] = frames->poses()[n];
     }
     session.correct(corrected);
     std::size_t added = 0;
-    while (known_.size() < frames->size() && added < how.most) {
-        const std::size_t n = known_.size();
+    while (poses_.size() < frames->size() && added < how.most) {
+        const std::size_t n = poses_.size();
         const auto frame = unless_unfinished(waits_for_, [&] { return frames->load_coloured(n); });
         if (!frame) {
             if (!how.is_last && !is_damaged(*frames, n)) break;
-            leave_out_damaged(how);
+            leave_out_damaged(session, how);
             continue;
         }
         unread_.clear();
-        Known& known = known_.emplace_back();
-        known.pose = frames->poses()[n];
         try {
-            known.frame = session.add(view_of(*frame, frames->intrinsics()), known.pose);
+            session.add(view_of(*frame, frames->intrinsics()), frames->poses()[n]);
+            poses_.emplace_back(frames->poses()[n]);
             ++added;
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
+            poses_.emplace_back();
+            session.skip_frame();
             if (how.told)
                 how.told(io::path_text(frames->files(n).front()) + ": " + error.what() +
                          "; it is left out");

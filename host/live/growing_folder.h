@@ -33,25 +33,22 @@ class GrowingFolder final : public Feed {
     // written: then waits_for() says what was wrong.
     std::optional<Intrinsics> intrinsics();
 
-    std::unique_ptr<Session> begin(const SessionOptions& options) override;
+    std::unique_ptr<Session> begin(const SessionOptions& options,
+                                   const std::filesystem::path& checkpoint) override;
     bool read(Session& session, const Reading& how) override;
-    std::uint64_t number_of(FrameId frame) const override;
     bool ended() override { return false; }
     std::string missing_from(const std::string& out) const override;
 
   private:
-    struct Known {
-        std::optional<FrameId> frame;  // none: left out
-        Mat4 pose{};
-    };
     using Stamps = std::vector<std::pair<std::uintmax_t, std::filesystem::file_time_type>>;
     static Stamps stamps_of(const io::FrameSequence& frames, std::size_t image);
     bool is_damaged(const io::FrameSequence& frames, std::size_t image);
-    void leave_out_damaged(const Reading& how);
+    void leave_out_damaged(Session& session, const Reading& how);
 
     std::filesystem::path folder_;
     Clock::duration patience_;
-    std::vector<Known> known_;  // by image, in the order of their names
+    // By image, in the order of their names, the pose that the session has; none: it was left out.
+    std::vector<std::optional<Mat4>> poses_;
     // The next image, where it can't be read: its files' sizes and times, and since when.
     Stamps unread_;
     Clock::time_point unread_since_{};

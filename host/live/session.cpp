@@ -331,6 +331,12 @@ FrameId Session::add(const FrameView& frame, const Mat4& camera_to_world) {
 FrameId Session::add(const CloudView& points, const Mat4& sensor_to_world) {
     return state_->add(points, sensor_to_world);
 }
+FrameId Session::next_frame() const {
+    return state_->frames().next();
+}
+void Session::skip_frame() {
+    state_->frames().skip();
+}
 void Session::correct(const std::map<FrameId, Mat4>& camera_to_world) {
     state_->frames().correct(camera_to_world);
 }

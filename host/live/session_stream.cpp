@@ -153,7 +153,7 @@ class SessionStream::Reader {
         if (!json.is_object()) entry.wrong("\"correct\" must hold a pose for each frame's number");
         Correct out;
         for (const auto& [name, pose] : json.items()) {
-            Number number = 0;
+            FrameId number = 0;
             const auto [end, error] =
                 std::from_chars(name.data(), name.data() + name.size(), number);
             if (error != std::errc() || end != name.data() + name.size())
@@ -291,11 +291,6 @@ std::optional<SessionStream::Message> SessionStream::next() {
     return out;
 }
 
-std::uint64_t SessionStream::number_of(FrameId frame) const {
-    return static_cast<std::uint64_t>(std::ranges::find(frames_, std::optional(frame)) -
-                                      frames_.begin());
-}
-
 bool SessionStream::ended() {
     const std::lock_guard lock(mutex_);
     if (!closed_ || !waiting_.empty()) return false;
@@ -303,22 +298,12 @@ bool SessionStream::ended() {
     return true;
 }
 
-std::unique_ptr<Session> SessionStream::begin(const SessionOptions& options) {
+std::unique_ptr<Session> SessionStream::begin(const SessionOptions& options,
+                                              const std::filesystem::path& checkpoint) {
     const std::lock_guard lock(mutex_);
     if (waiting_.empty()) return nullptr;
     const auto* camera = std::get_if<Intrinsics>(&waiting_.front().what);
-    return std::make_unique<Session>(camera ? Session(*camera, std::nullopt, options)
-                                            : Session::of_points(options));
-}
-
-FrameId SessionStream::frame_of(Number frame) const {
-    const auto refuse = [&](const std::string& why) {
-        throw Error(ErrorKind::input, "frame " + std::to_string(frame) + " " + why);
-    };
-    if (frame >= frames_.size())
-        refuse("has not come; " + io::counted(frames_.size(), "frame") + " did");
-    if (!frames_[frame]) refuse("was left out, or forgotten");
-    return *frames_[frame];
+    return session_of(camera ? std::optional(*camera) : std::nullopt, options, checkpoint);
 }
 
 bool SessionStream::apply(Session& session, const Message& message) {
@@ -326,19 +311,13 @@ bool SessionStream::apply(Session& session, const Message& message) {
         [&](const auto& what) {
             using What = std::decay_t<decltype(what)>;
             if constexpr (std::is_same_v<What, DepthFrame>) {
-                frames_.emplace_back();
-                frames_.back() =
-                    session.add(view_of(what, *session.intrinsics()), what.camera_to_world);
+                session.add(view_of(what, *session.intrinsics()), what.camera_to_world);
             } else if constexpr (std::is_same_v<What, Sweep>) {
-                frames_.emplace_back();
-                frames_.back() = session.add(CloudView(what.points), what.pose);
+                session.add(CloudView(what.points), what.pose);
             } else if constexpr (std::is_same_v<What, Correct>) {
-                std::map<FrameId, Mat4> poses;
-                for (const auto& [frame, pose] : what.poses) poses[frame_of(frame)] = pose;
-                session.correct(poses);
+                session.correct(what.poses);
             } else if constexpr (std::is_same_v<What, Forget>) {
-                session.forget(frame_of(what.frame));
-                frames_[what.frame].reset();
+                session.forget(what.frame);
             }
             return !std::is_same_v<What, Intrinsics>;
         },
@@ -347,8 +326,8 @@ bool SessionStream::apply(Session& session, const Message& message) {
 
 bool SessionStream::read(Session& session, const Reading& how) {
     bool changed = false;
-    const std::size_t first = frames_.size();
-    while (frames_.size() - first < how.most) {
+    const FrameId first = session.next_frame();
+    while (session.next_frame() - first < how.most) {
         const std::optional<Message> message = next();
         if (!message) break;
         try {
@@ -357,6 +336,7 @@ bool SessionStream::read(Session& session, const Reading& how) {
             if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::usage) throw;
             const bool adds = std::holds_alternative<DepthFrame>(message->what) ||
                               std::holds_alternative<Sweep>(message->what);
+            if (adds) session.skip_frame();
             if (how.told)
                 how.told(message->called + ": " + error.what() +
                          (adds ? "; it is left out" : "; so the message does nothing"));

@@ -28,23 +28,21 @@ class SessionStream final : public Feed {
     SessionStream(int file, std::string called, std::size_t most_bytes = std::size_t{256} << 20);
     ~SessionStream() override;
 
-    std::unique_ptr<Session> begin(const SessionOptions& options) override;
+    std::unique_ptr<Session> begin(const SessionOptions& options,
+                                   const std::filesystem::path& checkpoint) override;
     bool read(Session& session, const Reading& how) override;
-    std::uint64_t number_of(FrameId frame) const override;
     bool ended() override;
 
   private:
-    // Frames are numbered from 0 on as they come.
-    using Number = std::uint64_t;
     struct Sweep {
         PointCloud points;
         Mat4 pose{};
     };
     struct Correct {
-        std::map<Number, Mat4> poses;
+        std::map<FrameId, Mat4> poses;
     };
     struct Forget {
-        Number frame = 0;
+        FrameId frame = 0;
     };
     struct Message {
         std::variant<Intrinsics, DepthFrame, Sweep, Correct, Forget> what;
@@ -56,12 +54,10 @@ class SessionStream final : public Feed {
     std::optional<Message> next();
     void read_on(int file);
     // Whether it changed anything. Throws Error(input) for what the session refuses.
-    bool apply(Session& session, const Message& message);
-    FrameId frame_of(Number frame) const;
+    static bool apply(Session& session, const Message& message);
 
     const std::string called_;
     const std::size_t most_bytes_;
-    std::vector<std::optional<FrameId>> frames_;  // by number; none: left out, or forgotten
 
     mutable std::mutex mutex_;
     std::condition_variable taken_;

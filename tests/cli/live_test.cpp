@@ -72,6 +72,26 @@ TEST_F(Live, writes_what_a_parse_of_the_folder_does) {
     EXPECT_FALSE(std::filesystem::exists(in("live/things.json")));
 }
 
+TEST_F(Live, goes_on_from_a_checkpoint) {
+    const std::string keeps = std::string(follow) + " --checkpoint room.session";
+    succeeds(keeps);
+    const json before = read("live/things.json");
+    const Finished again = succeeds(keeps);
+    EXPECT_THAT(again.out, HasSubstr("going on from room.session: 8 frames\n"));
+    const json after = read("live/things.json");
+    ASSERT_EQ(after["things"].size(), before["things"].size());
+    for (std::size_t n = 0; n < after["things"].size(); ++n) {
+        EXPECT_EQ(after["things"][n]["id"], before["things"][n]["id"]);
+        EXPECT_EQ(after["things"][n]["change"], "none");
+    }
+    fails(2, std::string(follow) + " --checkpoint live/room.session",
+          {"is the output folder live, which is replaced"});
+    put("other.session", "mine");
+    fails(1, std::string(follow) + " --quiet --checkpoint other.session",
+          {"other.session: is no checkpoint of"});
+    EXPECT_EQ(bytes_of_file(in("other.session")), "mine");
+}
+
 TEST_F(Live, takes_messages_on_standard_input) {
     std::string stream =
         json{{"intrinsics", json::parse(bytes_of_file(in("scan/intrinsics.json")))}}.dump();

@@ -112,6 +112,10 @@ class Session {
     // finite are left out, and normals, of which the result has its own. A session is of one or the
     // other.
     FrameId add(const CloudView& points, const Mat4& sensor_to_world);
+    // The number that the next frame will have; and that one never comes in, as of an image that
+    // was damaged, so that numbers are those of a sequence.
+    FrameId next_frame() const;
+    void skip_frame();
     // After a loop closure: the poses that are others now. Those of frames that are not kept any
     // more count for nothing. Throws Error: usage (there was no such frame), input (no pose); no
     // pose is changed then.

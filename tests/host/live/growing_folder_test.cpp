@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_walk.h"
 #include "io/file_writer.h"
@@ -111,7 +114,7 @@ TEST_F(GrowingFolders, ADamagedImageIsLeftOutAndThoseBehindItKeepTheirPoses) {
     EXPECT_NE(folder_.waits_for().find("1.png"), std::string::npos);
     EXPECT_EQ(told_, "");
     EXPECT_TRUE(read());
-    EXPECT_EQ(session_.frames(), (std::vector<FrameId>{0, 1}));
+    EXPECT_EQ(session_.frames(), (std::vector<FrameId>{0, 2}));
     EXPECT_NE(told_.find("depth/1.png: is cut short"), std::string::npos) << told_;
     EXPECT_TRUE(folder_.waits_for().empty());
     EXPECT_TRUE(folder_.missing_from("out").ends_with("; 1 damaged image of 3 left out of out"));
@@ -138,6 +141,45 @@ TEST_F(GrowingFolders, NobodyWritesAnyMoreWhereItEnds) {
     const std::string missing = folder_.missing_from("out");
     EXPECT_NE(missing.find("0.png"), std::string::npos) << missing;
     EXPECT_TRUE(missing.ends_with("; 2 damaged images of 3 left out of out")) << missing;
+}
+
+TEST_F(GrowingFolders, GoOnFromACheckpointWithTheSameNumbersAndIds) {
+    io::write_file(path("scan/intrinsics.json"), scenes::intrinsics_text(walk_.intrinsics));
+    for (const std::size_t n : {0, 1, 2, 3}) write_frame(n);
+    scenes::write_depth_png(path("scan/depth/1.png"), 96,
+                            std::vector<std::uint16_t>(std::size_t{96} * 72));
+    write_poses(4);
+    SessionOptions options;
+    options.parse.disturbances.clear();
+    const auto file = path("room.session");
+    const auto first = folder_.begin(options, file);
+    ASSERT_TRUE(first);
+    folder_.read(*first, {});
+    const auto before = first->update();
+    first->checkpoint(file);
+
+    // Poses were corrected, and another frame came, meanwhile.
+    write_frame(4);
+    write_poses(5, 0.5);
+    live::GrowingFolder again(path("scan"));
+    const auto second = again.begin(options, file);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->frames(), (std::vector<FrameId>{0, 2, 3}));
+    EXPECT_TRUE(again.read(*second, {}));
+    EXPECT_FALSE(again.read(*second, {}));
+    EXPECT_EQ(second->frames(), (std::vector<FrameId>{0, 2, 3, 4}));
+    std::set<ThingId> known, kept;
+    for (const Thing& thing : before->things) known.insert(thing.id);
+    for (const Thing& thing : second->update()->things)
+        if (thing.change == Change::none) kept.insert(thing.id);
+    EXPECT_GE(kept.size(), 2u);
+    EXPECT_TRUE(std::ranges::includes(known, kept));
+
+    Intrinsics other = walk_.intrinsics;
+    other.fx += 1;
+    io::write_file(path("scan/intrinsics.json"), scenes::intrinsics_text(other));
+    expect_input_error([&] { again.begin(options, file); },
+                       {"room.session: is of another camera than what comes now"});
 }
 
 }  // namespace
