@@ -35,7 +35,7 @@ void visit_surroundings(const CellPlaces& cells, ThreadPool& pool, const Visit& 
                           n = first_at(cells[last - 1]->key + furthest + 1) - from;
         std::vector<std::uint64_t> key(n + 3, ~std::uint64_t{0}), count(n + 1), weight(n + 1);
         for (std::size_t i = 0; i < n; ++i) {
-            const CellSums& at = *cells[from + i];
+            const CellSums& at = cell_at(cells, from + i);
             key[i] = at.key;
             count[i + 1] = count[i] + at.count;
             weight[i + 1] = weight[i] + at.weight;

@@ -124,7 +124,9 @@ void CellTable::add(const Sums& sums, std::span<const std::uint32_t> which) {
     std::array<std::uint32_t, at_once> place{};
     for (; !which.empty(); which = which.subspan(std::min(at_once, which.size()))) {
         const auto some = which.first(std::min(at_once, which.size()));
+        const auto beyond = which.subspan(some.size());
         for (std::size_t n = 0; n < some.size(); ++n) {
+            if (n < beyond.size()) __builtin_prefetch(&sums(beyond[n]));
             place[n] = place_of(sums(some[n]).key);
             __builtin_prefetch(&cells_[place[n]]);
         }
@@ -144,11 +146,11 @@ void CellTable::grow() {
 
 namespace {
 
-const CellSums& sums_of(const CellSums& cell) {
-    return cell;
+const CellSums& sums_at(std::span<const CellSums> cells, std::size_t n) {
+    return cells[n];
 }
-const CellSums& sums_of(const CellSums* cell) {
-    return *cell;
+const CellSums& sums_at(std::span<CellSums* const> cells, std::size_t n) {
+    return cell_at(cells, n);
 }
 
 template <class Part>
@@ -158,7 +160,7 @@ void add_parts(CellTables& tables, std::span<const Part> parts, ThreadPool& pool
     std::vector<std::array<std::vector<std::uint32_t>, count>> of(parts.size());
     pool.each(parts.size(), 1, [&](std::size_t p) {
         for (std::size_t n = 0; n < parts[p].size(); ++n)
-            of[p][CellTables::shard_of(sums_of(parts[p][n]).key)].push_back(
+            of[p][CellTables::shard_of(sums_at(parts[p], n).key)].push_back(
                 static_cast<std::uint32_t>(n));
     });
     std::atomic<std::size_t> held = tables.bytes();
@@ -168,7 +170,7 @@ void add_parts(CellTables& tables, std::span<const Part> parts, ThreadPool& pool
         const std::size_t before = table.bytes();
         for (std::size_t p = 0; p < parts.size(); ++p) {
             const auto sums = [&](std::uint32_t n) -> const CellSums& {
-                return sums_of(parts[p][n]);
+                return sums_at(parts[p], n);
             };
             table.add(sums, of[p][shard]);
         }
@@ -207,10 +209,9 @@ void NeighbourSums::add(const RowReadings& row, const std::uint8_t* rgb, std::ui
                                : key == above.key ? above.at
                                                   : sums.size();
         if (at == sums.size()) {
-            CellSums none{};
+            CellSums& none = sums.emplace_back();
             none.key = key;
             none.best_frame = frame;
-            sums.push_back(none);
         }
         sums[at].add(row.weight[u], part);
         left = above = {key, at};

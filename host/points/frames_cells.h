@@ -116,6 +116,13 @@ class CellTable {
 
 // Where cells lie in their tables.
 using CellPlaces = boost::container::vector<CellSums*>;
+// One of them, for loops over many: they lie scattered, so that those some way on are fetched.
+inline constexpr std::size_t cells_ahead = 16;
+template <class Places>
+auto& cell_at(const Places& cells, std::size_t i) {
+    if (i + cells_ahead < cells.size()) __builtin_prefetch(cells[i + cells_ahead]);
+    return *cells[i];
+}
 
 // Cells shared out over tables by their cubes, so that several threads may fill them, one per
 // table, and that neighbours are near one another in memory.

@@ -22,7 +22,7 @@ void drop_cells(FusedCells& fused, const std::vector<std::uint8_t>& drop) {
 void drop_strays(FusedCells& fused, std::size_t frames, ThreadPool& pool) {
     std::vector<std::uint8_t> weak(fused.cells.size());
     visit_surroundings(fused.cells, pool, [&](std::size_t i, const Around& all) {
-        const CellSums& cell = *fused.cells[i];
+        const CellSums& cell = cell_at(fused.cells, i);
         const auto around = static_cast<double>(all.cells - 1),
                    count = static_cast<double>(all.count - cell.count),
                    weight = static_cast<double>(all.weight - cell.weight);
@@ -43,7 +43,7 @@ void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool
         for (std::vector<float>* values : {&points.x, &points.y, &points.z, &points.sigma})
             values->resize(n);
         pool.each(n, fused_chunk, [&](std::size_t i) {
-            const CellSums& cell = *fused.cells[from + i];
+            const CellSums& cell = cell_at(fused.cells, from + i);
             const std::array<double, 3> at = mean_of(cell);
             constexpr auto bias = static_cast<double>(key_bias);
             points.x[i] = static_cast<float>((at[0] - bias) * fused.cell_m);

@@ -35,7 +35,7 @@ CellGrid grid_of(const FusedCells& fused, ThreadPool& pool) {
     grid.cell_m = fused.cell_m;
     grid.resize(fused.cells.size(), false);
     pool.each(fused.cells.size(), fused_chunk, [&](std::size_t i) {
-        const CellSums& cell = *fused.cells[i];
+        const CellSums& cell = cell_at(fused.cells, i);
         const std::array<std::int32_t*, 3> index{&grid.x[i], &grid.y[i], &grid.z[i]};
         for (std::size_t a = 0; a < 3; ++a) {
             *index[a] = static_cast<std::int32_t>(index_in(cell.key, a) - key_bias);
@@ -153,6 +153,8 @@ void flatten_slab(FusedCells& fused, const FlattenedLevel& level, std::int32_t l
     const std::size_t first = level.first_at(low);
     pool.each(level.first_at(high) - first, fused_chunk, [&](std::size_t k) {
         const std::uint32_t i = level.which[first + k];
+        if (first + k + cells_ahead < level.which.size())
+            __builtin_prefetch(fused.cells[level.which[first + k + cells_ahead]]);
         CellSums& cell = *fused.cells[i];
         const std::size_t home = level.cell_of[i] - from;
         const std::uint32_t q = query_of[home];

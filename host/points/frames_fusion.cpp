@@ -125,8 +125,8 @@ FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
     for (const std::uint64_t count : cells_->outside) result.cloud.dropped += count;
     const bool coloured = std::ranges::any_of(
         fused.cells, [](const CellSums* cell) { return cell->colour_weight > 0; });
-    for (const CellSums* const place : fused.cells) {
-        const CellSums& cell = *place;
+    for (std::size_t n = 0; n < fused.cells.size(); ++n) {
+        const CellSums& cell = cell_at(fused.cells, n);
         if (coloured) {
             const auto mean = [&](std::size_t channel) {
                 const std::uint64_t weight = std::max(cell.colour_weight, 1u);
