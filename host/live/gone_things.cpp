@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "core/place.h"
@@ -106,24 +106,28 @@ void add_things(std::span<const ThingPixels> gone, const FramesLooked& frames,
                               static_cast<std::uint32_t>(pixel / by.width()),
                               frames.images[n].depth[pixel], surely});
     };
-    for (const ThingPixels& thing : gone) {
-        if (thing.empty()) continue;
-        std::set<Place> cells;
-        for (const auto& [frame, pixels] : thing) {
+    std::map<Place, std::size_t> thing_at;
+    FrameId end = 0;
+    for (std::size_t t = 0; t < gone.size(); ++t) {
+        for (const auto& [frame, pixels] : gone[t]) {
             const std::size_t n = frames.number_of(frame);
             for (const std::uint32_t pixel : pixels) {
                 if (frames.images[n].depth[pixel] == 0) continue;
-                cells.insert(cell_of(by, frames.images[n], pixel));
+                thing_at[cell_of(by, frames.images[n], pixel)] = t;
                 add(n, pixel);
             }
+            end = std::max(end, frame);
         }
-        for (std::size_t n = 0; n < frames.ids.size() && frames.ids[n] < thing.rbegin()->first;
-             ++n) {
-            if (thing.count(frames.ids[n])) continue;
-            for (std::size_t pixel = 0; pixel < by.pixels(); ++pixel)
-                if (frames.images[n].depth[pixel] != 0 &&
-                    cells.count(cell_of(by, frames.images[n], pixel)))
-                    add(n, pixel);
+    }
+    // What shows them in frames between, which tell of nothing.
+    for (std::size_t n = 0; n < frames.ids.size() && frames.ids[n] < end; ++n) {
+        for (std::size_t pixel = 0; pixel < by.pixels(); ++pixel) {
+            if (frames.images[n].depth[pixel] == 0) continue;
+            const auto at = thing_at.find(cell_of(by, frames.images[n], pixel));
+            if (at == thing_at.end()) continue;
+            const ThingPixels& thing = gone[at->second];
+            if (frames.ids[n] < thing.rbegin()->first && !thing.contains(frames.ids[n]))
+                add(n, pixel);
         }
     }
 }

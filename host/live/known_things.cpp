@@ -138,9 +138,9 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
                    alike_mass * std::max(object.mass_kg, before_[b].mass_kg);
     };
     const auto left = [&](std::size_t b) { return b < no_longer.size() && no_longer[b]; };
-    std::vector<Match> same = by_pixels(showed_, shown);
-    std::erase_if(same, [&](const Match& m) { return left(m.before) && !like(m.before, m.now); });
-    use_best(std::move(same), before_of, taken);
+    std::vector<Match> shared = by_pixels(showed_, shown);
+    std::erase_if(shared, [&](const Match& m) { return left(m.before) && !like(m.before, m.now); });
+    use_best(std::move(shared), before_of, taken);
     // Of what is left those that are like each other, the nearest first.
     const auto match_left = [&](const auto& may_be, const auto& alike) {
         std::vector<Match> pairs;

@@ -47,12 +47,12 @@ Passes::Passes(const Frames& frames, const ScanKind& kind, const std::map<FrameI
 std::vector<Gone> Passes::leave_out(Remembered& remembered, std::vector<bool>& no_longer) const {
     const FramesLooked looked{kind_.projection(), ids_, images_, later_};
     std::vector<ThingPixels> gone = still_gone(std::move(remembered.gone), looked);
-    const std::vector<ThingPixels> things = gone_of(remembered.things.pixels([&](FrameId frame) {
+    const auto pixels_of = [&](FrameId frame) {
         const auto kept = frames_.find(frame);
         return kept == frames_.end() ? std::vector<std::uint32_t>()
                                      : kind_.spot_pixels(kept->second);
-    }),
-                                                    looked);
+    };
+    const auto things = gone_of(remembered.things.pixels(pixels_of), looked);
     no_longer.clear();
     for (const ThingPixels& thing : things) no_longer.push_back(!thing.empty());
     std::ranges::copy_if(things, std::back_inserter(gone),
