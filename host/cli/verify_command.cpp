@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -27,7 +28,7 @@ struct VerifyArguments {
     std::string parsed;
     double seconds = 5, time_limit_s = 600;
     unsigned threads = 0;
-    bool json = false;
+    bool json = false, joints = true;
 };
 
 mujoco::Verdict verify(const VerifyArguments& a, Progress& progress) {
@@ -41,6 +42,7 @@ mujoco::Verdict verify(const VerifyArguments& a, Progress& progress) {
     ExportOptions options;
     options.mjcf = scratch.path();
     options.threads = a.threads;
+    options.joints = a.joints;
     options.cancelled = [] { return interrupted() != 0; };
     progress("export", 0);
     const ExportSummary exported = export_output(a.parsed, options);
@@ -80,6 +82,7 @@ int run_verify(const VerifyArguments& a) {
         keep(a.parsed, json);
         progress.finish();
         std::fputs(a.json ? json.c_str() : mujoco::verdict_text(verdict).c_str(), stdout);
+        mujoco::check_stable(verdict, io::path_text(a.parsed));
     });
 }
 
@@ -94,6 +97,9 @@ Command add_verify(CLI::App& app) {
                    "Seconds that this may take; what was simulated by then is told")
         ->capture_default_str();
     app.add_option("--threads", a->threads, "Threads; else all cores")->check(whole_number);
+    app.add_flag_function(
+        "--no-joints", [a](std::int64_t) { a->joints = false; },
+        "Doors and drawers stay parts of their furniture");
     app.add_flag("--json", a->json, "Print verify.json, which is written into OUT, not a table");
     return [a] { return run_verify(*a); };
 }

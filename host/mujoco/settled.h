@@ -21,9 +21,11 @@ struct Motion {
     bool stays() const { return moved_m < stays_m && turned_deg < stays_deg; }
 };
 
+inline constexpr const char* became_unstable = "it became unstable";
+
 struct Settled {
     std::string problem;          // why it could not be run; empty: it was
-    std::string cut_short;        // why it ended before its time: "it became unstable", say
+    std::string cut_short;        // why it ended before its time: became_unstable, say
     std::string version;          // of MuJoCo, "2.2.2"
     std::uint64_t contacts = 0;   // at the start
     double deepest_m = 0;         // of them

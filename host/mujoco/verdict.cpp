@@ -7,6 +7,7 @@
 
 #include "core/json.h"
 #include "io/json_values.h"
+#include "topple/error.h"
 
 namespace topple::mujoco {
 namespace {
@@ -102,6 +103,14 @@ Verdict judge(const Scene& scene, const ExportSummary& exported, Settled run, do
         out.objects.push_back(std::move(verdict));
     }
     return out;
+}
+
+void check_stable(const Verdict& verdict, const std::string& output) {
+    if (verdict.run.cut_short != became_unstable) return;
+    throw Error(ErrorKind::input,
+                output + printed(": MuJoCo became unstable after %.3g of %.3g s, so that it is not "
+                                 "known what stays",
+                                 verdict.run.simulated_s, verdict.asked_s));
 }
 
 std::string verdict_json(const Verdict& verdict) {

@@ -45,6 +45,9 @@ struct Verdict {
 // scene, exported, run: of the same export.
 Verdict judge(const Scene& scene, const ExportSummary& exported, Settled run, double asked_s);
 
+// Throws Error(input) where the simulation became unstable. output: what it was of.
+void check_stable(const Verdict& verdict, const std::string& output);
+
 // verify.json, schema "topple.verify/1".
 std::string verdict_json(const Verdict& verdict);
 

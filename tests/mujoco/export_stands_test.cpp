@@ -174,6 +174,9 @@ TEST(Verdict, SaysWhatARunLeftOut) {
     const std::string text = verdict_text(verdict);
     EXPECT_NE(text.find("it became unstable"), std::string::npos);
     EXPECT_NE(text.find("no room for all contacts"), std::string::npos);
+    EXPECT_THROW(check_stable(verdict, "room"), Error);
+    room.run.cut_short = "it took longer than it may";
+    EXPECT_NO_THROW(check_stable(judge(room.scene, room.exported, room.run, 5), "room"));
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ Settled simulate(mjModel& model, int room, double seconds, double patience_s) {
         out.left_out += warned(data, {mjWARN_CONTACTFULL, mjWARN_CNSTRFULL});
         if (out.left_out > 0 && may_have_more) break;
         if (warned(data, {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})) {
-            out.cut_short = "it became unstable";
+            out.cut_short = became_unstable;
             break;
         }
         for (std::size_t n = 0; n < free.size(); ++n)
