@@ -9,9 +9,11 @@
 
 namespace topple {
 
+inline constexpr double alike_sides = 0.15;
+
 // Whether two boxes, each turned as it may be, are of one thing that was scanned twice.
 // share: by which sides may differ, the shortest first.
-inline bool alike_sizes(Vec3 a, Vec3 b, double share = 0.15) {
+inline bool alike_sizes(Vec3 a, Vec3 b, double share = alike_sides) {
     constexpr double at_least_m = 0.02;
     std::ranges::sort(a);
     std::ranges::sort(b);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -266,14 +267,17 @@ std::vector<JointedFront> place_fronts(std::vector<Body>& bodies,
             made.body = n;
             made.middle = plus(front.middle, bodies[n].moved_m);
             made.grip = plus(front.grip, bodies[n].moved_m);
+            std::vector<std::pair<std::size_t, std::vector<ConvexPart>>> handles;
             for (std::size_t other = 0; other < bodies.size(); ++other)
                 if (other != n && is_handle(made, bodies[other]))
-                    made.handles.emplace_back(other, std::exchange(bodies[other].parts, {}));
+                    handles.emplace_back(other, std::exchange(bodies[other].parts, {}));
             made.boxes = boxes_of(made, deep_m, most_share * left_kg / density_kg_m3, bodies, n);
             if (made.boxes.empty()) {
-                for (auto& [other, parts] : made.handles) bodies[other].parts = std::move(parts);
+                for (auto& [other, parts] : handles) bodies[other].parts = std::move(parts);
                 continue;
             }
+            for (auto& [other, parts] : handles)
+                std::ranges::move(parts, std::back_inserter(made.handle));
             weigh(made, density_kg_m3);
             left_kg -= made.mass_kg;
             add_axis(deep_m, made);
@@ -292,9 +296,8 @@ void joint_fronts(std::vector<JointedFront>& fronts, std::vector<Body>& bodies) 
                 body_name(body, front.body) + "_front_" + std::to_string(number[front.body]++);
             return false;
         }
-        for (auto& [other, parts] : front.handles)
-            for (ConvexPart& part : parts)
-                if (!meets(bodies, part, body)) body.parts.push_back(std::move(part));
+        for (ConvexPart& part : front.handle)
+            if (!meets(bodies, part, body)) body.parts.push_back(std::move(part));
         return true;
     });
 }

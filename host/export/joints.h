@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "export/body.h"
@@ -16,9 +15,7 @@ struct JointedFront : Front {
     std::string name;        // object_ID_front_N
     std::size_t body = 0;    // what it is a part of: place in the scene's list
     std::vector<Box> boxes;  // they touch its body, and one another; simulators leave that out
-    // Things that were found where its handle is, by place in the scene's list, with the parts that
-    // they had: they are things no more.
-    std::vector<std::pair<std::size_t, std::vector<ConvexPart>>> handles;
+    std::vector<ConvexPart> handle;  // of what was found as things where its handle is
     double mass_kg = 0;
     Vec3 center_m{};
     Mat3 inertia_kg_m2{};

@@ -22,10 +22,14 @@ constexpr double least_shared = 0.1;
 constexpr double most_of_it = 0.5, much_of_it = 0.3, some_of_it = 0.1, least_told = 0.1;
 // Centres are found to so much.
 constexpr double aside_m = 0.05;
-// How much the weight of what moved may differ.
-constexpr double alike_mass = 0.3;
-// And its sides and weight, where it stands so near to where it was.
-constexpr double beside_m = 0.5, rough_share = 0.3, rough_mass = 4;
+// By what share of the longer one sides of one thing may differ, and its weights of the heavier
+// one: of what moved; and of what is no longer there and stands so near, which is another size to
+// each pass, as it saw other sides.
+struct Likeness {
+    double sides, mass;
+};
+constexpr Likeness like{alike_sides, 0.3}, roughly{0.3, 0.75};
+constexpr double beside_m = 0.5;
 
 struct Match {
     double alike;  // the more the better
@@ -125,33 +129,28 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
     const auto moved_m = [&](std::size_t b, std::size_t n) {
         return length(minus(scene.objects[n].box_middle_m, before_[b].middle_m));
     };
-    const auto roughly = [&](std::size_t b, std::size_t n) {
+    const auto is_alike = [&](std::size_t b, std::size_t n, const Likeness& how) {
         const Object& object = scene.objects[n];
-        return alike_sizes(object.size_m, before_[b].size_m, rough_share) &&
-               std::max(object.mass_kg, before_[b].mass_kg) <=
-                   rough_mass * std::min(object.mass_kg, before_[b].mass_kg);
-    };
-    const auto like = [&](std::size_t b, std::size_t n) {
-        const Object& object = scene.objects[n];
-        return alike_sizes(object.size_m, before_[b].size_m) &&
+        return alike_sizes(object.size_m, before_[b].size_m, how.sides) &&
                std::abs(object.mass_kg - before_[b].mass_kg) <=
-                   alike_mass * std::max(object.mass_kg, before_[b].mass_kg);
+                   how.mass * std::max(object.mass_kg, before_[b].mass_kg);
     };
     const auto left = [&](std::size_t b) { return b < no_longer.size() && no_longer[b]; };
     std::vector<Match> shared = by_pixels(showed_, shown);
-    std::erase_if(shared, [&](const Match& m) { return left(m.before) && !like(m.before, m.now); });
+    std::erase_if(
+        shared, [&](const Match& m) { return left(m.before) && !is_alike(m.before, m.now, like); });
     use_best(std::move(shared), before_of, taken);
     // Of what is left those that are like each other, the nearest first.
-    const auto match_left = [&](const auto& may_be, const auto& alike) {
+    const auto match_left = [&](const Likeness& how, const auto& may_be) {
         std::vector<Match> pairs;
         for (std::size_t b = 0; b < before_.size(); ++b)
             for (std::size_t n = 0; n < count; ++n)
-                if (!taken[b] && before_of[n] == none && may_be(b, n) && alike(b, n))
+                if (!taken[b] && before_of[n] == none && may_be(b, n) && is_alike(b, n, how))
                     pairs.push_back({-moved_m(b, n), b, n});
         use_best(std::move(pairs), before_of, taken);
     };
     // What no pixel shows, by its place.
-    match_left([&](std::size_t b, std::size_t n) { return moved_m(b, n) < aside_m; }, like);
+    match_left(like, [&](std::size_t b, std::size_t n) { return moved_m(b, n) < aside_m; });
     Showed shows;
     for (const auto& [frame, pixels] : shown) shows[frame] = pixels.object;
     const std::vector<double> gone = shares(before_.size(), showed_, shown, &Shown::later);
@@ -161,12 +160,10 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
     const std::vector<double> came = shares(count, shows, shown, &Shown::earlier);
 
     const std::vector<bool> was_taken = taken;
-    // What is no longer there and stands beside is another size to each pass, which saw other
-    // sides.
-    match_left([&](std::size_t b, std::size_t n) { return left(b) && moved_m(b, n) < beside_m; },
-               roughly);
-    match_left([&](std::size_t b, std::size_t n) { return has_gone(b) && came[n] >= most_of_it; },
-               like);
+    match_left(roughly,
+               [&](std::size_t b, std::size_t n) { return left(b) && moved_m(b, n) < beside_m; });
+    match_left(like,
+               [&](std::size_t b, std::size_t n) { return has_gone(b) && came[n] >= most_of_it; });
 
     std::vector<Before> now(count);
     bool named = building != before_.end();  // a building, with the number 0
@@ -180,7 +177,8 @@ std::vector<Thing> KnownThings::name(const Scene& scene, const ShownObjects& sho
             thing.change = came[n] >= most_of_it ? Change::came : Change::found;
         } else {
             thing.id = before_[b].id;
-            const bool aside = gone[b] >= some_of_it && moved_m(b, n) >= aside_m && like(b, n);
+            const bool aside =
+                gone[b] >= some_of_it && moved_m(b, n) >= aside_m && is_alike(b, n, like);
             if (!was_taken[b] || (thing.id != 0 && aside)) {
                 thing.change = Change::moved;
                 thing.moved_m = moved_m(b, n);

@@ -253,7 +253,8 @@ TEST_F(SlowPasses, TellWhatWasTakenAwayPutThereAndMoved) {
     EXPECT_EQ(told.moved, 1);
     EXPECT_EQ(told.wrongly, 0);
 
-    // A glance told what was put there, before.
+    // A glance told what was put there, before, and nothing else but what moved.
+    EXPECT_EQ(passes.glanced().size(), 2u);
     const Scene& scene = passes.scene().result->scene;
     EXPECT_TRUE(std::ranges::any_of(passes.scene().things, [&](const Thing& thing) {
         if (thing.change != Change::came) return false;
